@@ -1,0 +1,17 @@
+// The documents that a service answers about itself: all generated from the code or held against it by tests.
+#pragma once
+
+#include "renderer/description/limits.h"
+
+#include <string>
+#include <string_view>
+
+namespace api {
+
+std::string_view openapi_json();                                  // api/openapi.json, compiled in
+std::string write_version();                                      // {version, commit, compiler, isa}
+std::string write_capabilities(const renderer::Limits& limits);   // every limit (value, flag, env), model, format, default
+std::string write_discovery();                                    // GET /: links
+std::string write_health(bool ready, const std::string& reason);  // /healthz, /readyz
+
+} // namespace api

@@ -1,0 +1,58 @@
+// What a render says of itself: the plain structs behind report.models, .numerics, .timing and .accuracy.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace renderer {
+
+// One decision of the plan: a model that the scene needs, or one left out, and why.
+struct ModelChoice {
+    std::string name; // "direct", "phong", "watertight_triangles", "assumed_camera", ...
+    std::string why;  // one sentence for the user
+};
+
+struct ModelReport {
+    std::vector<ModelChoice> used;
+    std::vector<ModelChoice> skipped;
+};
+
+struct NumericsReport {
+    std::uint64_t non_finite_samples = 0;   // dropped and counted, never hidden
+    std::uint64_t degenerate_triangles = 0; // zero area: never hit
+    double coordinate_ratio = 0;            // largest coordinate over scene diagonal
+    std::string precision;                  // "float" or "double", of the ray kernels
+};
+
+enum class StopReason : std::uint8_t { samples, time, stopped };
+
+struct AccuracyReport {
+    std::uint32_t samples = 0; // taken in every pixel: the job with `samples` set to this has the same bytes
+    StopReason stop_reason = StopReason::samples;
+};
+
+// Seconds of wall time, and the plan's figures.
+struct TimingReport {
+    double prepare_s = 0;
+    double render_s = 0;
+    std::uint64_t camera_rays = 0;
+    std::uint64_t shadow_rays = 0;
+};
+
+struct GeometryReport {
+    std::uint64_t triangles = 0; // unique, instances not counted
+    std::uint64_t instances = 0;
+    std::uint64_t bvh_bytes = 0;
+};
+
+struct RenderReport {
+    ModelReport models;
+    NumericsReport numerics;
+    AccuracyReport accuracy;
+    TimingReport timing;
+    GeometryReport geometry;
+    std::uint32_t threads = 0;
+};
+
+} // namespace renderer

@@ -1,0 +1,51 @@
+// How to render a scene: picture, quality, seed and measuring switches. Input, like SceneDescription.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace renderer {
+
+// Half-open pixel rectangle, x to the right and y down from the picture's top left corner.
+struct PixelRect {
+    std::uint32_t x = 0, y = 0, width = 0, height = 0;
+    friend bool operator==(const PixelRect&, const PixelRect&) = default;
+};
+
+enum class Tone : std::uint8_t { srgb, linear };
+
+struct ImageSettings {
+    std::uint32_t width_px = 800, height_px = 600;
+    std::optional<PixelRect> region; // crop: the same pixels as the full picture has there
+    double exposure_ev = 0;          // radiance is multiplied by 2^exposure_ev before the tone curve
+    Tone tone = Tone::srgb;
+    friend bool operator==(const ImageSettings&, const ImageSettings&) = default;
+};
+
+struct QualitySettings {
+    std::optional<std::uint32_t> samples; // exactly this many a pixel
+    std::optional<double> time_s;         // the best picture in this time, in whole passes
+    std::uint32_t max_samples = 65536;    // ceiling for time_s
+    friend bool operator==(const QualitySettings&, const QualitySettings&) = default;
+};
+inline constexpr std::uint32_t kDefaultSamples = 64; // where quality names neither samples nor time
+
+enum class BvhSplit : std::uint8_t { sah, midpoint };
+
+// For measuring only; no member changes the picture.
+struct AccelerationSettings {
+    BvhSplit split = BvhSplit::sah;
+    std::uint32_t threads = 0; // 0: every core
+    std::uint32_t tile_px = 16;
+    friend bool operator==(const AccelerationSettings&, const AccelerationSettings&) = default;
+};
+
+struct RenderSettings {
+    ImageSettings image;
+    QualitySettings quality;
+    std::uint64_t seed = 1; // 0 to 2^53-1
+    AccelerationSettings acceleration;
+    friend bool operator==(const RenderSettings&, const RenderSettings&) = default;
+};
+
+} // namespace renderer

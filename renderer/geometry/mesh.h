@@ -1,0 +1,48 @@
+// Mesh: triangles as they came out of a file, checked: the imported form, before any BVH.
+//
+// Frame    the file's own coordinates; `part`s of a scene-graph file are already placed.
+// Promise  of a Mesh that validate_mesh() passed: every index is in range, every number finite, at least one triangle.
+#pragma once
+
+#include "renderer/color/rgb.h"
+#include "renderer/math/bounds.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace renderer {
+
+// A material that the file itself carries (MTL, glTF), as far as it is modelled.
+struct MeshMaterial {
+    std::string name;
+    Rgb diffuse{0.5f, 0.5f, 0.5f};
+    Rgb specular{0, 0, 0};
+    float shininess = 0;
+    std::vector<std::string> textures; // names of images it uses; not yet modelled, and reported as left out
+};
+
+// A named node of the file: a run of triangles.
+struct MeshPart {
+    std::string name;
+    std::uint32_t first_triangle = 0;
+    std::uint32_t triangle_count = 0;
+};
+
+using Triangle = std::array<std::uint32_t, 3>; // vertex indices, counter-clockwise seen from outside
+
+struct Mesh {
+    std::vector<Vec3f> positions;
+    std::vector<Vec3f> normals; // one a vertex, unit; or none
+    std::vector<Vec2f> uvs;     // one a vertex; or none
+    std::vector<Triangle> triangles;
+    std::vector<std::uint16_t> triangle_materials; // one a triangle; or none: all material 0
+    std::vector<MeshMaterial> materials;           // may be empty
+    std::vector<MeshPart> parts;                   // may be empty
+
+    Bounds3f bounds() const;             // of the vertices that triangles use
+    std::uint64_t size_bytes() const;    // of the arrays
+};
+
+} // namespace renderer

@@ -1,0 +1,42 @@
+// import_mesh: reads a mesh file (OBJ with MTL, PLY, STL, glTF, GLB) into a Mesh, treating every byte as hostile.
+//
+// Files    the importer asks `open` for every file by the name that the file itself uses (an MTL, a glTF buffer);
+//          nothing else is ever opened, nothing from disk or network.
+// Errors   faults are values with a plain sentence; never a half-read mesh. A missing MTL or texture is a note.
+// Cost     linear in the file; memory a small multiple of it, bounded by `limits`.
+#pragma once
+
+#include "renderer/description/limits.h"
+#include "renderer/geometry/mesh.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace renderer {
+
+struct ImportFault {
+    std::string code;   // "unknown_format", "truncated", "no_triangles", "non_finite", "index_out_of_range", ...
+    std::string detail; // one sentence: what, where in the file, how to mend it
+};
+
+struct ImportedMesh {
+    Mesh mesh;
+    std::string format;                    // "obj", "ply", "stl", "gltf", "glb"
+    std::vector<std::string> opened_files; // every other file that was asked for and found, sorted
+    std::vector<std::string> notes;        // "material file x.mtl is not among the job's files", ...
+};
+
+// Bytes of a file by name, or nothing if there is none. The span lives as long as the import.
+using OpenFile = std::function<std::optional<std::span<const std::byte>>(std::string_view name)>;
+
+// The format is told from the content first, then from the name's extension.
+std::variant<ImportedMesh, ImportFault> import_mesh(std::string_view name, std::span<const std::byte> bytes,
+                                                    const OpenFile& open, const Limits& limits);
+
+} // namespace renderer

@@ -1,0 +1,36 @@
+// ThreadPool: a fixed set of std::jthread that run one parallel loop at a time.
+//
+// Threads  run() may be called from any one thread at a time per pool (callers queue behind one another); the
+//          caller works along, so a pool of n has n-1 threads of its own. The body is called concurrently.
+// Errors   an exception from the body stops the loop and is thrown again by run().
+// Cost     one atomic increment an item: items should take microseconds, not nanoseconds.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <stop_token>
+
+namespace renderer {
+
+class ThreadPool {
+  public:
+    // `threads` 0: one for every core this process may use.
+    explicit ThreadPool(unsigned threads = 0);
+    ~ThreadPool();
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
+
+    unsigned size() const;
+
+    // Calls body(item, worker) for every item in [0, items), in order of claim, worker in [0, workers used).
+    // At most `max_workers` threads take part (0: all). Once `stop` is requested no further item is started.
+    void run(std::size_t items, const std::function<void(std::size_t item, unsigned worker)>& body,
+             std::stop_token stop = {}, unsigned max_workers = 0);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace renderer

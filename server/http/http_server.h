@@ -1,0 +1,42 @@
+// HttpServer: the HTTP face of the service: routes, negotiation, limits, and a health listener of its own.
+//
+// Handlers read, ask the job service, and reply; every answer has X-Request-Id. Errors of the world are caught once,
+// around the handler: the log gets them in full, the client a public sentence and an id.
+#pragma once
+
+#include "renderer/description/limits.h"
+#include "server/import/import_service.h"
+#include "server/jobs/job_service.h"
+#include "server/log/log.h"
+#include "server/store/blob_store.h"
+
+#include <memory>
+#include <string>
+
+namespace server {
+
+struct HttpOptions {
+    std::string host = "127.0.0.1";
+    int port = 8080;        // 0: any free port
+    int health_port = 0;    // 0: any free port; the second listener, for /healthz and /readyz alone
+    renderer::Limits limits;
+};
+
+class HttpServer {
+  public:
+    HttpServer(JobService& jobs, Store& store, BlobStore& blobs, ImportService& imports, const Log& log, HttpOptions options);
+    ~HttpServer();
+    HttpServer(const HttpServer&) = delete;
+    HttpServer& operator=(const HttpServer&) = delete;
+
+    void start();       // binds and listens; std::system_error naming host and port if it cannot
+    void stop();        // answers what is under way, closes the listeners
+    int port() const;   // the bound ones
+    int health_port() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace server

@@ -1,0 +1,67 @@
+// ImportService: from an uploaded blob to a prepared mesh, once per content. Imports run in heliograph-import, a child
+// process under rlimits, no_new_privs and a deadline, whose output is validated as hostile. Prepared meshes are kept
+// in memory, least recently used first out, by bytes.
+//
+// Key      digest of the main file, digests of every file it opened, importer version.
+// Threads  every function may be called from any thread; the same mesh asked for twice at once is imported once.
+// Errors   the client's doing (a broken mesh) is a value; StoreError and std::system_error are the world's.
+#pragma once
+
+#include "api/job_view.h"
+#include "renderer/accel/prepared_mesh.h"
+#include "renderer/description/limits.h"
+#include "renderer/parallel/thread_pool.h"
+#include "server/store/blob_store.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace server {
+
+struct ImportFailure {
+    std::string code;   // "truncated", "no_triangles", "import_timeout", "import_crashed", "over_limit", ...
+    std::string detail; // a sentence for the client
+};
+
+struct PreparedAsset {
+    std::shared_ptr<const renderer::PreparedMesh> mesh;
+    std::vector<std::string> notes; // from the importer
+};
+
+struct ImportRequest {
+    std::string name;                         // as the scene calls it: its extension may tell the format
+    std::string digest;                       // of the main file
+    std::map<std::string, std::string> files; // the job's files, name -> digest: the only names that resolve
+    renderer::BvhSplit split = renderer::BvhSplit::sah;
+};
+
+class ImportService {
+  public:
+    // `program`: path of heliograph-import.
+    ImportService(std::filesystem::path program, BlobStore& blobs, const renderer::Limits& limits);
+    ~ImportService();
+    ImportService(const ImportService&) = delete;
+    ImportService& operator=(const ImportService&) = delete;
+
+    // Cached or imported now. Nothing in the variant's first if `stop` was requested (mesh is null).
+    std::variant<PreparedAsset, ImportFailure> import(const ImportRequest& request, renderer::ThreadPool& pool,
+                                                      std::stop_token stop);
+    // A fault known from an earlier import of this very request; no work is done. For checks at POST.
+    std::variant<std::monostate, ImportFailure> known_failure(const ImportRequest& request) const;
+    // What GET /v1/assets/{digest}/info tells; imports (without building a BVH) if not yet known.
+    api::AssetInfo info(const std::string& digest, std::stop_token stop);
+
+    std::uint64_t cached_bytes() const;
+    std::uint64_t imports_run() const; // child processes started so far
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace server

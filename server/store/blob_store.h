@@ -1,0 +1,72 @@
+// BlobStore: assets and pictures by content: a file a digest, verified when written and when read.
+//
+// Durability  put() and Writer::commit() are durable when they return: temporary file, fsync, rename, fsync of the folder.
+// Threads     every function may be called from any thread.
+// Errors      StoreError for the world's failures (storage_full told apart); a damaged blob is reported by name and
+//             never served.
+#pragma once
+
+#include "server/store/store.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace server {
+
+class BlobStore {
+  public:
+    // Two name spaces: "assets" (uploads, least recently used and unreferenced go first) and "results".
+    enum class Kind : std::uint8_t { asset, result };
+
+    explicit BlobStore(std::filesystem::path folder);
+    ~BlobStore();
+    BlobStore(const BlobStore&) = delete;
+    BlobStore& operator=(const BlobStore&) = delete;
+
+    // A blob on its way in; forgotten unless committed.
+    class Writer {
+      public:
+        virtual ~Writer() = default;
+        virtual void append(std::span<const std::byte> bytes) = 0;
+        virtual std::uint64_t bytes() const = 0;
+        virtual std::string digest() = 0; // "sha256:<hex>" of what was appended; call once, at the end
+        virtual bool commit() = 0;        // durable; false if it was there already
+    };
+    std::unique_ptr<Writer> write(Kind kind);
+    // `durable` false: for what can be made again (pictures), no fsync.
+    std::string put(Kind kind, std::span<const std::byte> bytes, bool durable = true);
+
+    bool has(Kind kind, std::string_view digest) const;
+    std::optional<std::uint64_t> size(Kind kind, std::string_view digest) const;
+    // The bytes, verified against the digest; nothing if there is no such blob.
+    std::optional<std::vector<std::byte>> read(Kind kind, std::string_view digest);
+    // Path for handing to the importer as an open file descriptor; verified by the caller who reads it.
+    std::filesystem::path path(Kind kind, std::string_view digest) const;
+    bool remove(Kind kind, std::string_view digest);
+    void touch(Kind kind, std::string_view digest); // marks it as used now
+
+    std::uint64_t total_bytes(Kind kind) const;
+    std::vector<std::string> list(Kind kind) const; // least recently used first
+    // Removes least recently used assets that `keep` does not name until `bytes` more fit under `limit`.
+    // False if they do not.
+    bool make_room(std::uint64_t bytes, std::uint64_t limit, const std::vector<std::string>& keep);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// "sha256:" and 64 lower-case hex digits.
+bool is_digest(std::string_view text);
+std::string digest_of(std::span<const std::byte> bytes);
+std::string digest_of(std::string_view text);
+
+} // namespace server

@@ -1,0 +1,143 @@
+// Store: where jobs live. A durable, fenced queue: SqliteStore for a node, MemStore for tests; one conformance suite.
+//
+// Durability  submit() and cancel() are durable when they return. complete() may return before it is: a lost result
+//             renders again to the same bytes.
+// Fencing     claim() raises a job's epoch; complete(), fail(), release() and renew() with an older epoch do nothing
+//             and say so.
+// Threads     every function may be called from any thread.
+// Errors      the world's failures (disk full, corrupt file) throw StoreError; everything else is a value.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace server {
+
+struct StoreError : std::runtime_error {
+    bool storage_full = false;
+    StoreError(const std::string& what, bool full) : std::runtime_error(what), storage_full(full) {}
+};
+
+using JobId = std::string;  // 128 random bits, 32 hex digits
+using Tenant = std::string; // "" until keys exist
+
+// Stored states; `preparing`, `running` and `canceling` are told apart by the job service, in memory.
+enum class StoredState : std::uint8_t { queued, leased, succeeded, failed, canceled, expired };
+
+// Everything a job is, as the client gave it. Opaque text to the store.
+struct JobSpec {
+    std::string request_json;               // api::write_job of the accepted request
+    std::string render_key;                 // "sha256:..."
+    std::vector<std::string> asset_digests; // in use while the job is not final
+    int priority = 50;
+    std::map<std::string, std::string> labels;
+};
+
+struct JobResult {
+    std::string image_digest; // blob, "sha256:..."
+    std::string report_json;
+    std::string scene_json;   // the scene as executed
+    friend bool operator==(const JobResult&, const JobResult&) = default;
+};
+
+struct JobRecord {
+    JobId id;
+    Tenant tenant;
+    JobSpec spec;
+    StoredState state = StoredState::queued;
+    std::uint64_t epoch = 0;
+    std::uint32_t attempts = 0;
+    bool cancel_requested = false;
+    bool reused = false; // born succeeded from another job's result
+    std::int64_t created_ms = 0;
+    std::optional<std::int64_t> started_ms, finished_ms;
+    std::optional<JobResult> result;
+    std::string error_json;   // api::write_problem of the failure
+};
+
+// A run of work units of one pass of a job. One node renders whole jobs: pass 0, first 0, count 0 means all.
+struct Lease {
+    JobId job;
+    std::uint32_t pass = 0, first = 0, count = 0;
+    std::uint64_t epoch = 0;
+};
+
+// `idempotency_key` empty: none. `body_digest`: of the request as sent, to tell a replay from a reuse of the key.
+struct SubmitRequest {
+    Tenant tenant;
+    std::string idempotency_key;
+    std::string body_digest;
+    JobSpec spec;
+    bool allow_reuse = true;        // of a succeeded job with the same render_key
+    std::uint64_t queue_limit = 0;  // refuse when this many wait already; 0: no limit
+    std::int64_t now_ms = 0;
+};
+
+enum class SubmitStatus : std::uint8_t { accepted, replayed, key_reused, queue_full };
+
+struct Submitted {
+    SubmitStatus status = SubmitStatus::accepted;
+    JobRecord job; // the new or the replayed one; unset for key_reused and queue_full
+};
+
+struct ListQuery {
+    Tenant tenant;
+    std::optional<StoredState> state;
+    std::optional<std::pair<std::string, std::string>> label; // name, value
+    std::uint32_t limit = 50;
+    std::string cursor; // empty: from the newest
+};
+
+struct ListPage {
+    std::vector<JobRecord> jobs; // newest first
+    std::string next_cursor;     // empty: no more
+};
+
+struct QueueDepth {
+    std::uint64_t queued = 0, leased = 0;
+};
+
+class Store {
+  public:
+    virtual ~Store() = default;
+
+    virtual Submitted submit(const SubmitRequest& request) = 0;
+    virtual std::optional<JobRecord> get(const Tenant& tenant, const JobId& id) = 0;
+    virtual ListPage list(const ListQuery& query) = 0;
+    virtual QueueDepth depth() = 0;
+    // How many queued jobs would be claimed before this one; nothing if it is not queued.
+    virtual std::optional<std::uint32_t> queue_position(const JobId& id) = 0;
+
+    // Highest priority first, then oldest. At most `max`; empty when nothing waits.
+    virtual std::vector<Lease> claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) = 0;
+    virtual std::size_t renew(const std::vector<Lease>& leases, std::chrono::milliseconds ttl) = 0; // still owned
+    virtual bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms) = 0;    // false: fenced
+    virtual void release(const std::vector<Lease>& leases) = 0; // drain: claimable at once, attempt not counted
+    // retry: back to the queue unless it was tried 5 times; else failed. False: fenced.
+    virtual bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) = 0;
+    // The worker's answer to cancel_requested: the job is canceled. False: fenced.
+    virtual bool confirm_cancel(const Lease& lease, std::int64_t now_ms) = 0;
+
+    // Queued: canceled at once. Leased: cancel_requested. Final: nothing changes. Nothing if there is no such job.
+    virtual std::optional<JobRecord> cancel(const Tenant& tenant, const JobId& id, std::int64_t now_ms) = 0;
+    // Forgets a final job; false if there is none or it is not final.
+    virtual bool remove(const Tenant& tenant, const JobId& id) = 0;
+
+    // Final jobs older than `before_ms` become expired (result dropped), and long expired ones are forgotten.
+    virtual std::size_t sweep(std::int64_t before_ms) = 0;
+    // Digests that a job not final, or a kept result, still needs.
+    virtual std::vector<std::string> referenced_digests() = 0;
+    // Returns at the latest after `timeout`, or as soon as something may be claimed.
+    virtual void wait_work(std::chrono::milliseconds timeout) = 0;
+};
+
+// 128 bits from getrandom as 32 hex digits.
+JobId make_job_id();
+
+} // namespace server
