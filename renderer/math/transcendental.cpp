@@ -1,0 +1,1 @@
+#include "renderer/math/transcendental.h"
