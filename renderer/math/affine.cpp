@@ -33,7 +33,10 @@ Affine3 Affine3::rotate_deg(double degrees, Vec3d axis)
     return a;
 }
 
-double Affine3::determinant() const { return dot(rows[0], cross(rows[1], rows[2])); }
+double Affine3::determinant() const
+{
+    return dot(rows[0], cross(rows[1], rows[2]));
+}
 
 std::optional<Affine3> Affine3::inverse() const
 {
@@ -62,7 +65,8 @@ std::optional<Affine3> Affine3::inverse() const
 Affine3 operator*(const Affine3& outer, const Affine3& inner)
 {
     Affine3 a;
-    for (std::size_t i = 0; i < 3; ++i) a.rows[i] = inner.transposed_vector(outer.rows[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+        a.rows[i] = inner.transposed_vector(outer.rows[i]);
     a.translation = outer.point(inner.translation);
     return a;
 }

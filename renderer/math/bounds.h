@@ -10,8 +10,12 @@ namespace renderer {
 
 template <typename T>
 struct Bounds3 {
-    Vec3<T> lower{std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity(), std::numeric_limits<T>::infinity()};
-    Vec3<T> upper{-std::numeric_limits<T>::infinity(), -std::numeric_limits<T>::infinity(), -std::numeric_limits<T>::infinity()};
+    Vec3<T> lower{std::numeric_limits<T>::infinity(),
+                  std::numeric_limits<T>::infinity(),
+                  std::numeric_limits<T>::infinity()};
+    Vec3<T> upper{-std::numeric_limits<T>::infinity(),
+                  -std::numeric_limits<T>::infinity(),
+                  -std::numeric_limits<T>::infinity()};
 
     bool empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
     Vec3<T> center() const { return lower / T(2) + upper / T(2); }

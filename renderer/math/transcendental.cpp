@@ -1,1 +1,118 @@
 #include "renderer/math/transcendental.h"
+
+#include <cmath>
+#include <limits>
+
+namespace renderer {
+
+namespace {
+
+// Taylor polynomials: on |x| <= pi/4 the first term left out is below 1e-20, so rounding is the only error.
+double sin_kernel(double x)
+{
+    const double z = x * x;
+    double p = -1.0 / 121645100408832000.0; // -1/19!
+    p = p * z + 1.0 / 355687428096000.0;    // 1/17!
+    p = p * z - 1.0 / 1307674368000.0;
+    p = p * z + 1.0 / 6227020800.0;
+    p = p * z - 1.0 / 39916800.0;
+    p = p * z + 1.0 / 362880.0;
+    p = p * z - 1.0 / 5040.0;
+    p = p * z + 1.0 / 120.0;
+    p = p * z - 1.0 / 6.0;
+    return x + x * (z * p);
+}
+
+double cos_kernel(double x)
+{
+    const double z = x * x;
+    double p = 1.0 / 2432902008176640000.0; // 1/20!
+    p = p * z - 1.0 / 6402373705728000.0;   // -1/18!
+    p = p * z + 1.0 / 20922789888000.0;
+    p = p * z - 1.0 / 87178291200.0;
+    p = p * z + 1.0 / 479001600.0;
+    p = p * z - 1.0 / 3628800.0;
+    p = p * z + 1.0 / 40320.0;
+    p = p * z - 1.0 / 720.0;
+    p = p * z + 1.0 / 24.0;
+    // 1 - z/2 first, with what its rounding lost, so that the sum is right to an ulp near 1/sqrt(2).
+    const double half = 0.5 * z;
+    const double w = 1 - half;
+    return w + (((1 - w) - half) + z * z * p);
+}
+
+// sin and cos of (x + low) turned by `quarters` right angles.
+std::pair<double, double> turned(double x, double low, int quarters)
+{
+    const double s0 = sin_kernel(x), c0 = cos_kernel(x);
+    const double s = s0 + low * c0, c = c0 - low * s0;
+    switch (quarters & 3) {
+    case 0:
+        return {s, c};
+    case 1:
+        return {c, -s};
+    case 2:
+        return {-s, -c};
+    default:
+        return {-c, s};
+    }
+}
+
+} // namespace
+
+std::pair<double, double> sin_cos_deg(double degrees)
+{
+    if (!std::isfinite(degrees))
+        return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    const double turn = std::fmod(degrees, 360.0); // exact
+    const double quarters = std::rint(turn / 90);
+    const double rest =
+        turn - 90 * quarters; // exact: both are multiples of turn's last place and close together
+    // pi/180 in two parts, the upper one short enough that its product with the upper half of `rest` is
+    // exact.
+    constexpr double kHigh = 0x1.1df46ap-6, kLow = kPi / 180 - kHigh, kLowest = 2.9486522708701687e-19;
+    const double rest_high = static_cast<double>(static_cast<float>(rest)), rest_low = rest - rest_high;
+    const double exact = rest_high * kHigh;
+    const double correction = rest_low * kHigh + rest * kLow + rest * kLowest;
+    const double x = exact + correction;
+    return turned(x, correction - (x - exact), static_cast<int>(quarters));
+}
+
+std::pair<double, double> sin_cos(double radians)
+{
+    // pi/2 in three parts of at most 33 bits: their products with a quarter count below 2^20 are exact.
+    // Source: Cody, Waite, "Software Manual for the Elementary Functions", 1980, ch. 8.
+    constexpr double kFirst = 0x1.921fb544p+0, kSecond = 0x1.0b4611a6p-34, kThird = 0x1.3198a2e037073p-69;
+    const double quarters = std::rint(radians * (2 / kPi));
+    const double first = radians - quarters * kFirst;
+    const double second = quarters * kSecond;
+    const double y = first - second;
+    const double lost = (first - y) - second;
+    const double tail = lost - quarters * kThird;
+    const double x = y + tail;
+    return turned(x, (y - x) + tail, static_cast<int>(static_cast<long long>(quarters) & 3));
+}
+
+double tan_deg(double degrees)
+{
+    const auto [s, c] = sin_cos_deg(degrees);
+    return s / c;
+}
+
+double exp2(double x)
+{
+    const double whole = std::rint(x);
+    const double y = (x - whole) * 0.69314718055994530942;
+    // 1 + y/1 (1 + y/2 (1 + y/3 ...)): on |y| <= 0.35 the first term left out is below 1e-19.
+    double p = 1;
+    for (int n = 15; n >= 2; --n)
+        p = 1 + y * p / n;
+    return std::ldexp(1 + y * p, static_cast<int>(whole));
+}
+
+float pow(float x, float y)
+{
+    return std::pow(x, y);
+}
+
+} // namespace renderer

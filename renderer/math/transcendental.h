@@ -1,9 +1,9 @@
 // Transcendental functions with the same bits on every processor.
 //
-// glibc 2.36 picks FMA variants of its double exp, sin, log, pow, atan2 at run time, and those round differently.
-// The double functions here are built from +, -, *, / and sqrt alone, in a fixed order. The float ones forward to
-// libm, whose float versions evaluate in double and were seen to give the same bits either way; a test holds that
-// under GLIBC_TUNABLES.
+// glibc 2.36 picks FMA variants of its double exp, sin, log, pow, atan2 at run time, and those round
+// differently. The double functions here are built from +, -, *, / and sqrt alone, in a fixed order. The
+// float ones forward to libm, whose float versions evaluate in double and were seen to give the same bits
+// either way; a test holds that under GLIBC_TUNABLES.
 //
 // Errors  double: within 2 ulp over the ranges stated; NaN in, NaN out.
 #pragma once

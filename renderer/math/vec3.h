@@ -1,7 +1,8 @@
-// Vec3: three components, used for points, directions and normals alike; the name at the point of use says which.
+// Vec3: three components, used for points, directions and normals alike; the name at the point of use says
+// which.
 //
-// Precision  Vec3d carries world space, cameras and transforms; Vec3f carries mesh-local vertices and kernels.
-// Cost       plain values, no allocation, never throws.
+// Precision  Vec3d carries world space, cameras and transforms; Vec3f carries mesh-local vertices and
+// kernels. Cost       plain values, no allocation, never throws.
 #pragma once
 
 #include <cmath>
@@ -58,7 +59,8 @@ constexpr Vec3<T> abs(Vec3<T> v)
     return {v.x < 0 ? -v.x : v.x, v.y < 0 ? -v.y : v.y, v.z < 0 ? -v.z : v.z};
 }
 
-// Euclidean length; scaled first, so that neither 1e-300 nor 1e300 under- or overflows. 0 for the zero vector.
+// Euclidean length; scaled first, so that neither 1e-300 nor 1e300 under- or overflows. 0 for the zero
+// vector.
 template <typename T>
 T length(Vec3<T> v)
 {
@@ -76,10 +78,22 @@ Vec3<T> normalize(Vec3<T> v)
     return s / std::sqrt(dot(s, s));
 }
 
-constexpr Vec3d to_double(Vec3f v) { return {v.x, v.y, v.z}; }
-constexpr Vec3f to_float(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+constexpr Vec3d to_double(Vec3f v)
+{
+    return {v.x, v.y, v.z};
+}
+constexpr Vec3f to_float(Vec3d v)
+{
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
-inline bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-inline bool is_finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(Vec3d v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+inline bool is_finite(Vec3f v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 } // namespace renderer

@@ -18,13 +18,15 @@ unsigned usable_cores()
 {
     cpu_set_t set;
     CPU_ZERO(&set);
-    if (sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
+    if (sched_getaffinity(0, sizeof set, &set) == 0)
+        return static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
     return std::max(1u, std::thread::hardware_concurrency());
 }
 
 } // namespace
 
-// One loop at a time: threads sleep until `generation` moves, claim items from `next`, and report back in `busy`.
+// One loop at a time: threads sleep until `generation` moves, claim items from `next`, and report back in
+// `busy`.
 struct ThreadPool::State {
     struct Loop {
         std::size_t items = 0;
@@ -95,9 +97,14 @@ ThreadPool::~ThreadPool()
     state_->threads.clear();
 }
 
-unsigned ThreadPool::size() const { return static_cast<unsigned>(state_->threads.size()) + 1; }
+unsigned ThreadPool::size() const
+{
+    return static_cast<unsigned>(state_->threads.size()) + 1;
+}
 
-void ThreadPool::run(std::size_t items, const std::function<void(std::size_t, unsigned)>& body, std::stop_token stop,
+void ThreadPool::run(std::size_t items,
+                     const std::function<void(std::size_t, unsigned)>& body,
+                     std::stop_token stop,
                      unsigned max_workers)
 {
     const std::lock_guard one_caller(state_->callers);

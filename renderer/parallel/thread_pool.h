@@ -14,7 +14,7 @@
 namespace renderer {
 
 class ThreadPool {
-  public:
+public:
     // `threads` 0: one for every core this process may use.
     explicit ThreadPool(unsigned threads = 0);
     ~ThreadPool();
@@ -25,10 +25,12 @@ class ThreadPool {
 
     // Calls body(item, worker) for every item in [0, items), in order of claim, worker in [0, workers used).
     // At most `max_workers` threads take part (0: all). Once `stop` is requested no further item is started.
-    void run(std::size_t items, const std::function<void(std::size_t item, unsigned worker)>& body,
-             std::stop_token stop = {}, unsigned max_workers = 0);
+    void run(std::size_t items,
+             const std::function<void(std::size_t item, unsigned worker)>& body,
+             std::stop_token stop = {},
+             unsigned max_workers = 0);
 
-  private:
+private:
     struct State;
     std::unique_ptr<State> state_;
 };
