@@ -10,6 +10,7 @@
 #include "api/problem.h"
 #include "renderer/description/limits.h"
 #include "server/import/import_service.h"
+#include "server/log/log.h"
 #include "server/store/blob_store.h"
 #include "server/store/store.h"
 
@@ -44,6 +45,7 @@ struct JobImage {
 struct JobServiceOptions {
     renderer::Limits limits;
     unsigned threads = 0; // of the render pool; 0: every core
+    Log log{};
 };
 
 class JobService {

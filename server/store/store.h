@@ -14,7 +14,9 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace server {
@@ -43,6 +45,7 @@ struct JobResult {
     std::string image_digest; // blob, "sha256:..."
     std::string report_json;
     std::string scene_json;   // the scene as executed
+    std::uint32_t samples = 0; // in every pixel
     friend bool operator==(const JobResult&, const JobResult&) = default;
 };
 
@@ -118,6 +121,11 @@ class Store {
     virtual std::vector<Lease> claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) = 0;
     virtual std::size_t renew(const std::vector<Lease>& leases, std::chrono::milliseconds ttl) = 0; // still owned
     virtual bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms) = 0;    // false: fenced
+    // A queued job takes the result of another with the same render_key: succeeded and `reused`, without being
+    // claimed. False if it is not queued.
+    virtual bool complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms) = 0;
+    // The result that a succeeded job with this render_key has, the newest such job's; what submit() would reuse.
+    virtual std::optional<JobResult> find_result(const Tenant& tenant, const std::string& render_key) = 0;
     virtual void release(const std::vector<Lease>& leases) = 0; // drain: claimable at once, attempt not counted
     // retry: back to the queue unless it was tried 5 times; else failed. False: fenced.
     virtual bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) = 0;
@@ -133,8 +141,9 @@ class Store {
     virtual std::size_t sweep(std::int64_t before_ms) = 0;
     // Digests that a job not final, or a kept result, still needs.
     virtual std::vector<std::string> referenced_digests() = 0;
-    // Returns at the latest after `timeout`, or as soon as something may be claimed.
-    virtual void wait_work(std::chrono::milliseconds timeout) = 0;
+    // Returns at the latest after `timeout`, or as soon as something may be claimed
+    // or `stop` is requested.
+    virtual void wait_work(std::chrono::milliseconds timeout, std::stop_token stop) = 0;
 };
 
 // 128 bits from getrandom as 32 hex digits.
