@@ -17,6 +17,7 @@ struct Limits {
     std::uint64_t samples = 65536;
     std::uint64_t triangles = 50'000'000;
     std::uint64_t objects = 100'000;
+    std::uint64_t render_memory_bytes = 8ull << 30;
     std::uint64_t queue_jobs = 1000;
     std::uint64_t wait_s = 60;
     std::uint64_t waiters = 64;

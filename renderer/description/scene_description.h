@@ -1,8 +1,8 @@
 // SceneDescription: what a user wrote, complete and checked, in plain structs: the renderer's input.
 //
-// Everything is SI and linear Rec. 709; things refer to one another by index. Angles stay in degrees, under names
-// that end in _deg, so that a scene written out again has the very numbers that were read.
-// `api` fills and writes these structs; the defaults of scene.md are the member initialisers here and nowhere else.
+// Everything is SI and linear Rec. 709; things refer to one another by index. Angles stay in degrees, under
+// names that end in _deg, so that a scene written out again has the very numbers that were read. `api` fills
+// and writes these structs; the defaults of scene.md are the member initialisers here and nowhere else.
 #pragma once
 
 #include "renderer/color/rgb.h"
@@ -20,7 +20,7 @@ struct CameraDescription {
     Vec3d position{0, 0, 0};
     bool aim_is_direction = false; // `aim` is a direction (any length but zero) instead of a point
     Vec3d aim{0, 0, -1};
-    Vec3d up{0, 1, 0}; // need not be perpendicular; parallel to the view is allowed
+    Vec3d up{0, 1, 0};   // need not be perpendicular; parallel to the view is allowed
     double fov_deg = 45; // vertical, in (0, 180)
 
     friend bool operator==(const CameraDescription&, const CameraDescription&) = default;
@@ -78,7 +78,8 @@ enum class Shading : std::uint8_t { automatic, smooth, flat }; // automatic: smo
 
 struct ObjectDescription {
     Shape shape;
-    std::optional<std::uint32_t> material; // index into materials; nothing: the mesh's own, else the default diffuse
+    std::optional<std::uint32_t>
+        material; // index into materials; nothing: the mesh's own, else the default diffuse
     Affine3 world_from_object;
     bool visible_to_camera = true;
     Shading shading = Shading::automatic;
@@ -129,10 +130,10 @@ struct MeshReference {
 };
 
 struct SceneDescription {
-    std::optional<CameraDescription> camera;     // nothing: framed from the bounds, see plan/assume.h
-    std::optional<Environment> environment;      // nothing: none, or assumed where nothing else shines
+    std::optional<CameraDescription> camera; // nothing: framed from the bounds, see plan/plan.h
+    std::optional<Environment> environment;  // nothing: none, or assumed where nothing else shines
     std::vector<NamedMaterial> materials;
-    std::vector<MeshReference> meshes;           // each name once
+    std::vector<MeshReference> meshes; // each name once
     std::vector<ObjectDescription> objects;
     std::vector<Light> lights;
     TransportDescription transport;

@@ -1,7 +1,7 @@
 // Plan: what a scene needs, decided once from the description and the meshes' facts, and explained.
 //
-// The only place where "model only what the scene requires" is decided. It also predicts cost, so that a job over a
-// limit is refused with the number before anything is allocated.
+// The only place where "model only what the scene requires" is decided. It also predicts cost, so that a job
+// over a limit is refused with the number before anything is allocated.
 #pragma once
 
 #include "renderer/description/fault.h"
@@ -26,7 +26,9 @@ struct MeshFacts {
     bool has_normals = false;
     bool has_materials = false;
     bool has_textures = false;
+    bool has_specular = false; // a material of its own shines: it is shaded as normalised Phong
     std::vector<MeshPart> parts;
+    std::vector<Bounds3f> part_bounds; // one a part
 };
 MeshFacts facts_of(const Mesh& mesh);
 
@@ -41,16 +43,18 @@ AssumedScene assume_defaults(SceneDescription description, std::span<const MeshF
 struct Plan {
     TransportType transport = TransportType::direct;
     ModelReport models;
-    bool keep_normals = false;     // some object shades smoothly
-    bool two_levels = true;        // false: one untransformed mesh needs no top-level BVH
-    std::uint64_t camera_rays = 0; // predicted, for `samples` settings
-    std::uint64_t shadow_rays = 0; // upper bound
-    std::uint64_t memory_bytes = 0; // film, meshes, BVHs: upper bound
+    bool keep_normals = false;      // some object shades smoothly
+    bool two_levels = true;         // false: one untransformed mesh needs no top-level BVH
+    std::uint64_t camera_rays = 0;  // predicted, for `samples` settings
+    std::uint64_t shadow_rays = 0;  // upper bound
+    std::uint64_t memory_bytes = 0; // film, pictures, meshes, BVHs: upper bound
 };
 
-// Either a plan or every fault: a part that no mesh has, a singular transform, a budget exceeded (with the number).
-// `scene` has been through assume_defaults.
-std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene, std::span<const MeshFacts> meshes,
-                                                 const RenderSettings& settings, const Limits& limits);
+// Either a plan or every fault: a part that no mesh has, a singular transform, a budget exceeded (with the
+// number). `scene` has been through assume_defaults.
+std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
+                                                 std::span<const MeshFacts> meshes,
+                                                 const RenderSettings& settings,
+                                                 const Limits& limits);
 
 } // namespace renderer

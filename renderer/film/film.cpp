@@ -1,0 +1,30 @@
+#include "renderer/film/film.h"
+
+namespace renderer {
+
+Film::Film(PixelRect rect) : region(rect), sums(std::size_t{rect.width} * rect.height) {}
+
+void Film::merge(const TileSums& part)
+{
+    const PixelRect& t = part.tile;
+    std::size_t from = 0;
+    for (std::uint32_t y = 0; y < t.height; ++y) {
+        const std::size_t row = std::size_t{t.y - region.y + y} * region.width + (t.x - region.x);
+        for (std::uint32_t x = 0; x < t.width; ++x)
+            sums[row + x] += part.sums[from++];
+    }
+}
+
+LinearImage Film::mean() const
+{
+    LinearImage image{region.width, region.height, std::vector<Rgb>(sums.size())};
+    if (samples == 0) return image;
+    const double n = samples;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        image.pixels[i] = {static_cast<float>(sums[i].r / n),
+                           static_cast<float>(sums[i].g / n),
+                           static_cast<float>(sums[i].b / n)};
+    return image;
+}
+
+} // namespace renderer

@@ -1,0 +1,176 @@
+#include "renderer/plan/check_description.h"
+
+#include "renderer/plan/world_bounds.h"
+
+#include <cmath>
+#include <variant>
+
+namespace renderer {
+
+namespace {
+
+// Beyond this a float ray kernel cannot square a coordinate.
+constexpr double kLargestCoordinate = 1e18;
+
+bool is_direction(Vec3d v)
+{
+    return is_finite(v) && max_component(abs(v)) > 0;
+}
+
+bool is_finite(Rgb c)
+{
+    return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
+}
+
+std::string name_list(const std::vector<MeshPart>& parts)
+{
+    constexpr std::size_t kMost = 20;
+    std::string list;
+    for (std::size_t i = 0; i < parts.size() && i < kMost; ++i)
+        list += (i == 0 ? "\"" : ", \"") + parts[i].name + "\"";
+    if (parts.size() > kMost) list += ", and " + std::to_string(parts.size() - kMost) + " more";
+    return list;
+}
+
+class Checker {
+public:
+    Checker(const SceneDescription& scene, std::span<const MeshFacts> meshes) : scene_(scene), meshes_(meshes)
+    {
+    }
+
+    std::vector<Fault> run()
+    {
+        if (scene_.camera) check(*scene_.camera);
+        for (std::size_t i = 0; i < scene_.objects.size(); ++i)
+            check(scene_.objects[i], "/scene/objects/" + std::to_string(i));
+        for (std::size_t i = 0; i < scene_.lights.size(); ++i)
+            check(scene_.lights[i], "/scene/lights/" + std::to_string(i));
+        return std::move(faults_);
+    }
+
+private:
+    void fault(std::string pointer, std::string code, std::string detail)
+    {
+        faults_.push_back({std::move(pointer), std::move(code), std::move(detail)});
+    }
+
+    void check(const CameraDescription& camera)
+    {
+        const std::string aim = camera.aim_is_direction ? "/scene/camera/direction" : "/scene/camera/look_at";
+        if (!(camera.fov_deg > 0 && camera.fov_deg < 180))
+            fault("/scene/camera/fov_deg",
+                  "out_of_range",
+                  std::to_string(camera.fov_deg) + " is not between 0 and 180 degrees, both excluded");
+        if (!is_finite(camera.position))
+            fault("/scene/camera/position", "not_finite", "every number must be finite");
+        const Vec3d forward = camera.aim_is_direction ? camera.aim : camera.aim - camera.position;
+        if (!is_direction(forward))
+            fault(aim,
+                  "out_of_range",
+                  camera.aim_is_direction
+                      ? "a direction must not be (0, 0, 0)"
+                      : "the camera stands at the very point it looks at: move one of the two");
+        if (!is_direction(camera.up)) fault("/scene/camera/up", "out_of_range", "up must not be (0, 0, 0)");
+    }
+
+    void check_mesh(const MeshShape& shape, const std::string& at)
+    {
+        if (shape.mesh >= meshes_.size()) return fault(at + "/mesh", "missing_asset", "no such mesh");
+        if (shape.part.empty()) return;
+        const MeshFacts& facts = meshes_[shape.mesh];
+        for (const MeshPart& part : facts.parts)
+            if (part.name == shape.part) {
+                if (part.triangle_count == 0)
+                    fault(at + "/part", "no_triangles", "the part \"" + shape.part + "\" has no triangles");
+                return;
+            }
+        fault(at + "/part",
+              "unknown_part",
+              facts.parts.empty() ? "the mesh has no named parts: leave `part` out"
+                                  : "no part \"" + shape.part + "\"; there are " + name_list(facts.parts));
+    }
+
+    void check(const ObjectDescription& object, const std::string& at)
+    {
+        const std::size_t before = faults_.size();
+        if (const auto* const mesh = std::get_if<MeshShape>(&object.shape)) check_mesh(*mesh, at);
+        if (object.material && *object.material >= scene_.materials.size())
+            fault(at + "/material", "unknown_material", "no such material");
+        if (!object.world_from_object.inverse())
+            return fault(
+                at + "/transform",
+                "singular_transform",
+                "the transform flattens the object (its determinant is 0): scale by something other than 0");
+        if (faults_.size() != before) return;
+        for (const Vec3d& corner : world_corners(object, meshes_))
+            if (!is_finite(corner) || max_component(abs(corner)) > kLargestCoordinate)
+                return fault(at + "/transform",
+                             "out_of_range",
+                             "places the object beyond 1e18 m from the origin: scale or move the scene");
+    }
+
+    void check(const Light& light, const std::string& at)
+    {
+        if (const auto* const point = std::get_if<PointLight>(&light)) {
+            if (!is_finite(point->position) || !is_finite(point->intensity))
+                fault(at, "not_finite", "every number of a light must be finite");
+        } else if (const auto* const spot = std::get_if<SpotLight>(&light)) {
+            if (!is_finite(spot->position) || !is_finite(spot->intensity))
+                fault(at, "not_finite", "every number of a light must be finite");
+            check_direction(spot->direction, at);
+            if (!(spot->inner_deg >= 0 && spot->inner_deg <= spot->outer_deg && spot->outer_deg <= 180))
+                fault(at + "/inner_deg", "out_of_range", "0 <= inner_deg <= outer_deg <= 180 must hold");
+        } else {
+            const auto& directional = std::get<DirectionalLight>(light);
+            if (!is_finite(directional.irradiance))
+                fault(at, "not_finite", "every number of a light must be finite");
+            check_direction(directional.direction, at);
+        }
+    }
+
+    void check_direction(Vec3d direction, const std::string& at)
+    {
+        if (!is_direction(direction))
+            fault(at + "/direction", "out_of_range", "a direction must not be (0, 0, 0)");
+    }
+
+    const SceneDescription& scene_;
+    std::span<const MeshFacts> meshes_;
+    std::vector<Fault> faults_;
+};
+
+} // namespace
+
+std::vector<Fault> check_description(const SceneDescription& scene, std::span<const MeshFacts> meshes)
+{
+    return Checker(scene, meshes).run();
+}
+
+std::vector<Fault> check_settings(const RenderSettings& settings)
+{
+    std::vector<Fault> faults;
+    const ImageSettings& image = settings.image;
+    if (image.width_px == 0)
+        faults.push_back({"/image/width", "out_of_range", "0 is not a width: at least 1"});
+    if (image.height_px == 0)
+        faults.push_back({"/image/height", "out_of_range", "0 is not a height: at least 1"});
+    if (image.region) {
+        const PixelRect& r = *image.region;
+        const bool inside = r.width > 0 && r.height > 0 && std::uint64_t{r.x} + r.width <= image.width_px &&
+                            std::uint64_t{r.y} + r.height <= image.height_px;
+        if (!inside)
+            faults.push_back({"/image/region",
+                              "out_of_range",
+                              "the region must have at least one pixel and lie within the picture of " +
+                                  std::to_string(image.width_px) + " x " + std::to_string(image.height_px)});
+    }
+    if (settings.quality.samples && *settings.quality.samples == 0)
+        faults.push_back({"/quality/samples", "out_of_range", "0 samples make no picture: at least 1"});
+    if (settings.quality.time_s && !(*settings.quality.time_s > 0))
+        faults.push_back({"/quality/time_s", "out_of_range", "a time must be above 0 seconds"});
+    if (settings.acceleration.tile_px == 0)
+        faults.push_back({"/acceleration/tile", "out_of_range", "0 is not a tile size: at least 1"});
+    return faults;
+}
+
+} // namespace renderer

@@ -1,0 +1,186 @@
+#include "renderer/plan/choices.h"
+
+#include <string>
+#include <variant>
+
+namespace renderer {
+
+namespace {
+
+// What stands in a scene, counted.
+struct Census {
+    std::size_t mesh_objects = 0, rectangles = 0, disks = 0, boxes = 0, spheres = 0;
+    std::size_t smooth = 0, flat_with_normals = 0, textured_meshes = 0;
+    std::size_t diffuse = 0, phong_classic = 0, phong_normalized = 0, default_material = 0;
+    std::size_t point = 0, spot = 0, directional = 0;
+    bool sky = false;
+};
+
+template <typename T, typename Variant>
+std::size_t is_a(const Variant& value)
+{
+    return std::holds_alternative<T>(value) ? 1u : 0u;
+}
+
+void count_material(Census& c, const Material& material)
+{
+    if (const auto* const phong = std::get_if<PhongMaterial>(&material))
+        ++(phong->form == PhongForm::classic ? c.phong_classic : c.phong_normalized);
+    else
+        ++c.diffuse;
+}
+
+void count_object(Census& c,
+                  const ObjectDescription& object,
+                  const SceneDescription& scene,
+                  std::span<const MeshFacts> meshes)
+{
+    const MeshFacts* facts = nullptr;
+    if (const auto* const mesh = std::get_if<MeshShape>(&object.shape)) {
+        ++c.mesh_objects;
+        facts = &meshes[mesh->mesh];
+        if (shades_smoothly(object, meshes))
+            ++c.smooth;
+        else if (facts->has_normals)
+            ++c.flat_with_normals;
+    }
+    c.rectangles += is_a<RectangleShape>(object.shape);
+    c.disks += is_a<DiskShape>(object.shape);
+    c.boxes += is_a<BoxShape>(object.shape);
+    c.spheres += is_a<SphereShape>(object.shape);
+    if (object.material) return count_material(c, scene.materials[*object.material].material);
+    if (facts == nullptr || !facts->has_materials) {
+        ++c.default_material;
+        return;
+    }
+    if (facts->has_textures) ++c.textured_meshes;
+    ++(facts->has_specular ? c.phong_normalized : c.diffuse);
+}
+
+Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshes)
+{
+    Census c;
+    for (const ObjectDescription& object : scene.objects)
+        count_object(c, object, scene, meshes);
+    for (const Light& light : scene.lights) {
+        c.point += is_a<PointLight>(light);
+        c.spot += is_a<SpotLight>(light);
+        c.directional += is_a<DirectionalLight>(light);
+    }
+    c.sky = scene.environment && std::holds_alternative<ColorEnvironment>(*scene.environment);
+    return c;
+}
+
+std::string of(std::size_t count, const char* what)
+{
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+class Explainer {
+public:
+    Explainer(const Census& census, const Plan& plan) : c_(census), plan_(plan) {}
+
+    ModelReport run(const std::vector<ModelChoice>& assumed)
+    {
+        out_.used = assumed;
+        use("pinhole_camera", "one ray a sample, jittered in the pixel: a box filter of one pixel");
+        use("direct",
+            "light reaches a surface from lights and environment and is scattered once towards the camera");
+        skip("indirect_light", "transport is direct: light that scatters more than once is left out");
+        geometry();
+        shading();
+        lights();
+        return std::move(out_);
+    }
+
+private:
+    void use(std::string name, std::string why) { out_.used.push_back({std::move(name), std::move(why)}); }
+    void skip(std::string name, std::string why)
+    {
+        out_.skipped.push_back({std::move(name), std::move(why)});
+    }
+    void use_if(std::size_t count, const char* name, const std::string& why)
+    {
+        if (count != 0) use(name, why);
+    }
+
+    void geometry()
+    {
+        use_if(c_.mesh_objects + c_.boxes,
+               "watertight_triangles",
+               of(c_.mesh_objects + c_.boxes, "object") +
+                   " made of triangles: no ray slips through a shared edge");
+        use_if(c_.rectangles + c_.disks,
+               "flat_shapes",
+               of(c_.rectangles + c_.disks, "rectangle or disk object"));
+        use_if(c_.spheres, "exact_spheres", of(c_.spheres, "sphere") + ", intersected as spheres");
+        if (plan_.two_levels)
+            use("two_level_bvh", "objects are placed over their meshes' own trees, so instances share one");
+        else
+            skip("two_level_bvh", "a single object stands where its file put it: its own tree is enough");
+    }
+
+    void shading()
+    {
+        if (c_.smooth != 0)
+            use("smooth_normals", of(c_.smooth, "object") + " with vertex normals");
+        else
+            skip("smooth_normals",
+                 c_.flat_with_normals != 0 ? "every object with vertex normals is asked to be flat"
+                                           : "no mesh has vertex normals");
+        use_if(c_.diffuse, "diffuse", of(c_.diffuse, "object") + " of diffuse materials");
+        use_if(c_.default_material,
+               "default_diffuse",
+               of(c_.default_material, "object") + " without a material: diffuse 0.5");
+        use_if(c_.phong_normalized,
+               "phong_normalized",
+               of(c_.phong_normalized, "object") + " of energy-conserving Phong");
+        use_if(c_.phong_classic,
+               "phong_classic",
+               of(c_.phong_classic, "object") +
+                   " of classic Phong, which may reflect more light than it gets");
+        if (c_.textured_meshes != 0)
+            skip("textures",
+                 of(c_.textured_meshes, "object") +
+                     " with textures of the mesh's own: their plain colours are used");
+    }
+
+    void lights()
+    {
+        const std::size_t all = c_.point + c_.spot + c_.directional;
+        use_if(c_.point, "point_lights", of(c_.point, "point light"));
+        use_if(c_.spot, "spot_lights", of(c_.spot, "spot light"));
+        use_if(c_.directional, "directional_lights", of(c_.directional, "directional light"));
+        use_if(all, "hard_shadows", "one shadow ray a light and sample, which ends at the light");
+        if (c_.sky)
+            use("environment_light",
+                "the environment's colour is background and light: one shadow ray a sample, drawn by the "
+                "material");
+        else
+            skip("environment_light", "the environment is none");
+        if (all == 0 && !c_.sky)
+            skip("lights",
+                 "the scene has no light and says that its environment is none: nothing but ambient terms "
+                 "shines");
+    }
+
+    const Census& c_;
+    const Plan& plan_;
+    ModelReport out_;
+};
+
+} // namespace
+
+bool shades_smoothly(const ObjectDescription& object, std::span<const MeshFacts> meshes)
+{
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    return mesh != nullptr && meshes[mesh->mesh].has_normals && object.shading != Shading::flat;
+}
+
+ModelReport explain(const AssumedScene& scene, std::span<const MeshFacts> meshes, const Plan& plan)
+{
+    const Census census = census_of(scene.description, meshes);
+    return Explainer(census, plan).run(scene.assumed);
+}
+
+} // namespace renderer

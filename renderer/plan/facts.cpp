@@ -1,0 +1,36 @@
+#include "renderer/plan/plan.h"
+
+namespace renderer {
+
+namespace {
+
+Bounds3f part_bounds(const Mesh& mesh, const MeshPart& part)
+{
+    Bounds3f bounds;
+    for (std::size_t i = 0; i < part.triangle_count; ++i)
+        for (const std::uint32_t vertex : mesh.triangles[part.first_triangle + i])
+            bounds.extend(mesh.positions[vertex]);
+    return bounds;
+}
+
+} // namespace
+
+MeshFacts facts_of(const Mesh& mesh)
+{
+    MeshFacts facts;
+    facts.bounds = mesh.bounds();
+    facts.triangles = mesh.triangles.size();
+    facts.vertices = mesh.positions.size();
+    facts.has_normals = !mesh.normals.empty();
+    facts.has_materials = !mesh.materials.empty();
+    for (const MeshMaterial& material : mesh.materials) {
+        facts.has_textures = facts.has_textures || !material.textures.empty();
+        facts.has_specular = facts.has_specular || (!is_black(material.specular) && material.shininess > 0);
+    }
+    facts.parts = mesh.parts;
+    for (const MeshPart& part : mesh.parts)
+        facts.part_bounds.push_back(part_bounds(mesh, part));
+    return facts;
+}
+
+} // namespace renderer
