@@ -110,6 +110,36 @@ double exp2(double x)
     return std::ldexp(1 + y * p, static_cast<int>(whole));
 }
 
+// x = m 2^e with m in [sqrt(1/2), sqrt(2)); log m = 2 atanh((m - 1) / (m + 1)) by its series.
+double log2(double x)
+{
+    if (!(x > 0) || !std::isfinite(x))
+        return x == 0  ? -std::numeric_limits<double>::infinity()
+               : x > 0 ? x
+                       : std::numeric_limits<double>::quiet_NaN();
+    int exponent = 0;
+    double m = std::frexp(x, &exponent);
+    if (m < 0.70710678118654752440) {
+        m *= 2;
+        --exponent;
+    }
+    const double s = (m - 1) / (m + 1), z = s * s; // z <= 0.0295: z^13 / 27 is below 1e-21
+    double p = 1.0 / 25;
+    p = p * z + 1.0 / 23;
+    p = p * z + 1.0 / 21;
+    p = p * z + 1.0 / 19;
+    p = p * z + 1.0 / 17;
+    p = p * z + 1.0 / 15;
+    p = p * z + 1.0 / 13;
+    p = p * z + 1.0 / 11;
+    p = p * z + 1.0 / 9;
+    p = p * z + 1.0 / 7;
+    p = p * z + 1.0 / 5;
+    p = p * z + 1.0 / 3;
+    constexpr double kTwoOverLn2 = 2.8853900817779268147;
+    return static_cast<double>(exponent) + (s + s * (z * p)) * kTwoOverLn2;
+}
+
 float pow(float x, float y)
 {
     return std::pow(x, y);

@@ -22,6 +22,8 @@ std::pair<double, double> sin_cos(double radians);
 double tan_deg(double degrees);
 // 2^x for |x| up to 1000; exact where x is an integer.
 double exp2(double x);
+// Base 2 logarithm of x > 0, also of subnormal x; -infinity at 0, NaN below. Within 3 ulp, absolute near 1.
+double log2(double x);
 
 // x^y for x >= 0, as std::pow(float, float) rounds it.
 float pow(float x, float y);
