@@ -1,0 +1,96 @@
+#include "renderer/parallel/thread_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+using renderer::ThreadPool;
+
+TEST(ThreadPool, RunsEveryItemExactlyOnceOnAnyNumberOfThreads)
+{
+    for (unsigned threads = 1; threads <= 8; ++threads) {
+        ThreadPool pool(threads);
+        ASSERT_EQ(pool.size(), threads);
+        std::vector<std::atomic<int>> seen(10000);
+        pool.run(seen.size(), [&](std::size_t item, unsigned) { seen[item].fetch_add(1); });
+        for (const std::atomic<int>& count : seen)
+            ASSERT_EQ(count.load(), 1);
+    }
+}
+
+TEST(ThreadPool, NumbersWorkersBelowTheLimitAndUsesNoMore)
+{
+    ThreadPool pool(8);
+    std::atomic<unsigned> largest{0}, inside{0}, most_inside{0};
+    const auto raise = [](std::atomic<unsigned>& to, unsigned value) {
+        for (unsigned old = to.load(); old < value && !to.compare_exchange_weak(old, value);) {
+        }
+    };
+    pool.run(
+        20000,
+        [&](std::size_t, unsigned worker) {
+            raise(most_inside, inside.fetch_add(1) + 1);
+            raise(largest, worker);
+            inside.fetch_sub(1);
+        },
+        {},
+        3);
+    EXPECT_LT(largest.load(), 3u);
+    EXPECT_LE(most_inside.load(), 3u);
+}
+
+TEST(ThreadPool, StartsNoItemAfterAStop)
+{
+    ThreadPool pool(4);
+    std::stop_source stop;
+    std::atomic<int> ran{0};
+    pool.run(
+        1'000'000,
+        [&](std::size_t, unsigned) {
+            if (ran.fetch_add(1) == 10) stop.request_stop();
+        },
+        stop.get_token());
+    EXPECT_GE(ran.load(), 11);
+    EXPECT_LE(ran.load(), 11 + 4);
+    ran = 0;
+    pool.run(
+        100, [&](std::size_t, unsigned) { ran.fetch_add(1); }, stop.get_token());
+    EXPECT_EQ(ran.load(), 0);
+}
+
+TEST(ThreadPool, ThrowsTheBodysExceptionAndWorksOn)
+{
+    ThreadPool pool(4);
+    EXPECT_THROW(pool.run(1000,
+                          [](std::size_t item, unsigned) {
+                              if (item == 500) throw std::runtime_error("item");
+                          }),
+                 std::runtime_error);
+    std::atomic<int> ran{0};
+    pool.run(1000, [&](std::size_t, unsigned) { ran.fetch_add(1); });
+    EXPECT_EQ(ran.load(), 1000);
+}
+
+TEST(ThreadPool, QueuesCallersBehindOneAnother)
+{
+    ThreadPool pool(4);
+    std::atomic<int> ran{0};
+    {
+        std::vector<std::jthread> callers;
+        for (int c = 0; c < 8; ++c)
+            callers.emplace_back([&] {
+                for (int loop = 0; loop < 50; ++loop)
+                    pool.run(20, [&](std::size_t, unsigned) { ran.fetch_add(1); });
+            });
+    }
+    EXPECT_EQ(ran.load(), 8 * 50 * 20);
+}
+
+TEST(ThreadPool, RunsNothingForNoItems)
+{
+    ThreadPool pool(2);
+    pool.run(0, [](std::size_t, unsigned) { FAIL(); });
+}
