@@ -1,9 +1,11 @@
-// import_mesh: reads a mesh file (OBJ with MTL, PLY, STL, glTF, GLB) into a Mesh, treating every byte as hostile.
+// import_mesh: reads a mesh file (OBJ with MTL, PLY, STL, glTF, GLB) into a Mesh, treating every byte as
+// hostile.
 //
-// Files    the importer asks `open` for every file by the name that the file itself uses (an MTL, a glTF buffer);
+// Files    the importer asks `open` for every file by the name that the file itself uses (an MTL, a glTF
+// buffer);
 //          nothing else is ever opened, nothing from disk or network.
-// Errors   faults are values with a plain sentence; never a half-read mesh. A missing MTL or texture is a note.
-// Cost     linear in the file; memory a small multiple of it, bounded by `limits`.
+// Errors   faults are values with a plain sentence; never a half-read mesh. A missing MTL or texture is a
+// note. Cost     linear in the file; memory a small multiple of it, bounded by `limits`.
 #pragma once
 
 #include "renderer/description/limits.h"
@@ -21,7 +23,8 @@
 namespace renderer {
 
 struct ImportFault {
-    std::string code;   // "unknown_format", "truncated", "no_triangles", "non_finite", "index_out_of_range", ...
+    std::string
+        code; // "unknown_format", "truncated", "no_triangles", "non_finite", "index_out_of_range", ...
     std::string detail; // one sentence: what, where in the file, how to mend it
 };
 
@@ -35,8 +38,12 @@ struct ImportedMesh {
 // Bytes of a file by name, or nothing if there is none. The span lives as long as the import.
 using OpenFile = std::function<std::optional<std::span<const std::byte>>(std::string_view name)>;
 
+using ImportResult = std::variant<ImportedMesh, ImportFault>;
+
 // The format is told from the content first, then from the name's extension.
-std::variant<ImportedMesh, ImportFault> import_mesh(std::string_view name, std::span<const std::byte> bytes,
-                                                    const OpenFile& open, const Limits& limits);
+ImportResult import_mesh(std::string_view name,
+                         std::span<const std::byte> bytes,
+                         const OpenFile& open,
+                         const Limits& limits);
 
 } // namespace renderer

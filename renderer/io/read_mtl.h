@@ -1,0 +1,22 @@
+// read_mtl: the materials of a Wavefront MTL file, as far as they are modelled (Kd, Ks, Ns, names of
+// textures).
+//
+// Errors   none: a line that cannot be read is told in `notes` and leaves the default. Colours are brought
+// into [0, 1].
+#pragma once
+
+#include "renderer/geometry/mesh.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace renderer {
+
+// Appends to `materials`. `file` is for the notes.
+void read_mtl(std::string_view text,
+              std::string_view file,
+              std::vector<MeshMaterial>& materials,
+              std::vector<std::string>& notes);
+
+} // namespace renderer
