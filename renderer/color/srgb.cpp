@@ -16,7 +16,9 @@ float clamp_unit(float x)
 float srgb_from_linear(float linear)
 {
     const float x = clamp_unit(linear);
-    return x <= 0.0031308f ? 12.92f * x : clamp_unit(1.055f * pow(x, 1.0f / 2.4f) - 0.055f);
+    if (x <= 0.0031308f) return 12.92f * x;
+    // In double, so that 1 stays 1.
+    return clamp_unit(static_cast<float>(1.055 * static_cast<double>(pow(x, 1.0f / 2.4f)) - 0.055));
 }
 
 float linear_from_srgb(float encoded)

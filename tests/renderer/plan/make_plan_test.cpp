@@ -1,0 +1,286 @@
+#include "renderer/camera/camera.h"
+#include "renderer/math/transcendental.h"
+#include "renderer/plan/plan.h"
+#include "renderer/plan/world_bounds.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace testing;
+using renderer::Affine3;
+using renderer::assume_defaults;
+using renderer::AssumedScene;
+using renderer::Fault;
+using renderer::Limits;
+using renderer::make_plan;
+using renderer::MeshFacts;
+using renderer::ModelChoice;
+using renderer::ObjectDescription;
+using renderer::Plan;
+using renderer::RenderSettings;
+using renderer::SceneDescription;
+using renderer::Vec3d;
+
+namespace {
+
+MeshFacts cube_facts()
+{
+    MeshFacts facts;
+    facts.bounds = {{-1, -2, -3}, {1, 2, 3}};
+    facts.triangles = 12;
+    facts.vertices = 24;
+    return facts;
+}
+
+SceneDescription one_mesh()
+{
+    SceneDescription scene;
+    scene.meshes.push_back({"cube.obj", ""});
+    scene.objects.emplace_back().shape = renderer::MeshShape{};
+    return scene;
+}
+
+std::vector<Fault> faults_of(const SceneDescription& scene,
+                             const std::vector<MeshFacts>& meshes,
+                             const RenderSettings& settings = {},
+                             const Limits& limits = {})
+{
+    const auto result = make_plan(assume_defaults(scene, meshes, 4.0 / 3), meshes, settings, limits);
+    const auto* const faults = std::get_if<std::vector<Fault>>(&result);
+    return faults != nullptr ? *faults : std::vector<Fault>{};
+}
+
+Plan plan_of(const SceneDescription& scene, const std::vector<MeshFacts>& meshes)
+{
+    const auto result = make_plan(assume_defaults(scene, meshes, 4.0 / 3), meshes, {}, {});
+    EXPECT_TRUE(std::holds_alternative<Plan>(result));
+    return std::get<Plan>(result);
+}
+
+std::vector<std::string> names(const std::vector<ModelChoice>& choices)
+{
+    std::vector<std::string> out;
+    for (const ModelChoice& choice : choices) {
+        EXPECT_FALSE(choice.why.empty()) << choice.name;
+        out.push_back(choice.name);
+    }
+    return out;
+}
+
+} // namespace
+
+TEST(AssumeDefaults, FramesTheWholeSceneFromTheSameSideForEveryAspect)
+{
+    const std::vector<MeshFacts> meshes{cube_facts()};
+    SceneDescription scene = one_mesh();
+    scene.objects[0].world_from_object =
+        Affine3::translate({100, 20, -7}) * Affine3::rotate_deg(33, {1, 2, 0});
+    for (const double aspect : {0.25, 0.5, 1.0, 4.0 / 3, 3.0}) {
+        const AssumedScene assumed = assume_defaults(scene, meshes, aspect);
+        const auto& camera = *assumed.description.camera;
+        const renderer::Camera pinhole(camera, static_cast<std::uint32_t>(1200 * aspect), 1200);
+        EXPECT_NEAR(dot(pinhole.forward(), normalize(Vec3d{-0.35, -0.3, -1})), 1, 1e-12);
+        const double tan_y = renderer::tan_deg(camera.fov_deg / 2);
+        double widest = 0;
+        for (const Vec3d& corner : world_corners(scene.objects[0], meshes)) {
+            const Vec3d c = corner - camera.position;
+            const double depth = dot(c, pinhole.forward());
+            ASSERT_GT(depth, 0);
+            widest = std::max({widest,
+                               std::abs(dot(c, pinhole.right())) / (depth * tan_y * aspect),
+                               std::abs(dot(c, pinhole.up())) / (depth * tan_y)});
+        }
+        EXPECT_LT(widest, 0.95) << aspect;
+        EXPECT_GT(widest, 0.8) << aspect; // and not from far away
+    }
+}
+
+TEST(AssumeDefaults, FramesTheSameAtEveryScale)
+{
+    const std::vector<MeshFacts> meshes{cube_facts()};
+    for (const double scale : {1e-6, 1e-3, 1.0, 1e6}) {
+        SceneDescription scene = one_mesh();
+        scene.objects[0].world_from_object = Affine3::scale({scale, scale, scale});
+        const double distance =
+            length(assume_defaults(scene, meshes, 1).description.camera->position) / scale;
+        EXPECT_NEAR(
+            distance, length(assume_defaults(one_mesh(), meshes, 1).description.camera->position), 1e-9);
+    }
+}
+
+TEST(AssumeDefaults, FramesThePartThatIsShown)
+{
+    MeshFacts facts = cube_facts();
+    facts.parts = {{"lid", 0, 2}};
+    facts.part_bounds = {{{0.5f, 1, 1}, {1, 2, 2}}};
+    SceneDescription scene = one_mesh();
+    scene.objects[0].shape = renderer::MeshShape{0, "lid"};
+    const auto camera = *assume_defaults(scene, std::vector{facts}, 1).description.camera;
+    EXPECT_EQ(camera.aim, (Vec3d{0.75, 1.5, 1.5}));
+}
+
+TEST(AssumeDefaults, LightsOnlyASceneThatNothingLights)
+{
+    const std::vector<MeshFacts> meshes{cube_facts()};
+    const AssumedScene dark = assume_defaults(one_mesh(), meshes, 1);
+    EXPECT_THAT(names(dark.assumed), ElementsAre("assumed_camera", "assumed_sky", "assumed_sun"));
+    EXPECT_EQ(dark.description.lights.size(), 1u);
+
+    SceneDescription lit = one_mesh();
+    lit.lights.emplace_back(renderer::PointLight{});
+    const AssumedScene kept = assume_defaults(lit, meshes, 1);
+    EXPECT_THAT(names(kept.assumed), ElementsAre("assumed_camera"));
+    EXPECT_TRUE(std::holds_alternative<renderer::NoEnvironment>(*kept.description.environment));
+
+    SceneDescription black = one_mesh();
+    black.environment = renderer::NoEnvironment{}; // said, so kept
+    EXPECT_TRUE(assume_defaults(black, meshes, 1).description.lights.empty());
+}
+
+TEST(AssumeDefaults, LightsWhiteWithoutClipping)
+{
+    const AssumedScene scene = assume_defaults(one_mesh(), std::vector{cube_facts()}, 1);
+    const auto sky = std::get<renderer::ColorEnvironment>(*scene.description.environment).radiance;
+    const auto sun = std::get<renderer::DirectionalLight>(scene.description.lights[0]).irradiance;
+    const auto pi = static_cast<float>(renderer::kPi);
+    for (const float white : {sky.r + sun.r / pi, sky.g + sun.g / pi, sky.b + sun.b / pi}) {
+        EXPECT_LE(white, 1);
+        EXPECT_GE(white, 0.85f);
+    }
+}
+
+TEST(AssumeDefaults, HasACameraForAPointAndForNothing)
+{
+    SceneDescription empty;
+    EXPECT_EQ(assume_defaults(empty, {}, 1).description.camera->position, (Vec3d{0, 0, 0}));
+    MeshFacts point;
+    point.bounds = {{5, 5, 5}, {5, 5, 5}};
+    const auto camera = *assume_defaults(one_mesh(), std::vector{point}, 1).description.camera;
+    EXPECT_GT(length(camera.position - camera.aim), 0);
+}
+
+TEST(MakePlan, NamesEveryFaultAtOnceWithItsPointer)
+{
+    MeshFacts facts = cube_facts();
+    facts.parts = {{"lid", 0, 2}, {"body", 2, 10}};
+    SceneDescription scene = one_mesh();
+    scene.objects[0].shape = renderer::MeshShape{0, "lit"};
+    scene.objects.emplace_back().world_from_object = Affine3::scale({1, 0, 1});
+    scene.objects.back().shape = renderer::SphereShape{};
+    scene.camera.emplace();
+    scene.camera->fov_deg = 180;
+    scene.camera->aim = scene.camera->position;
+    scene.lights.emplace_back(renderer::DirectionalLight{{0, 0, 0}, {1, 1, 1}});
+    RenderSettings settings;
+    settings.image.region = renderer::PixelRect{700, 0, 101, 600};
+
+    const auto faults = faults_of(scene, {facts}, settings);
+    std::vector<std::string> pointers;
+    for (const Fault& fault : faults) {
+        pointers.push_back(fault.pointer);
+        EXPECT_FALSE(fault.detail.empty());
+    }
+    EXPECT_THAT(pointers,
+                ElementsAre("/scene/camera/fov_deg",
+                            "/scene/camera/look_at",
+                            "/scene/objects/0/part",
+                            "/scene/objects/1/transform",
+                            "/scene/lights/0/direction",
+                            "/image/region"));
+    EXPECT_THAT(faults[2].detail, AllOf(HasSubstr("\"lid\""), HasSubstr("\"body\"")));
+}
+
+TEST(MakePlan, RefusesFieldsOfViewThatAreNone)
+{
+    SceneDescription scene = one_mesh();
+    for (const double fov : {0.0, 180.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+        scene.camera.emplace();
+        scene.camera->fov_deg = fov;
+        const auto faults = faults_of(scene, {cube_facts()});
+        ASSERT_EQ(faults.size(), 1u) << fov;
+        EXPECT_EQ(faults[0].pointer, "/scene/camera/fov_deg");
+    }
+    for (const double fov : {0.01, 179.9}) {
+        scene.camera->fov_deg = fov;
+        EXPECT_TRUE(faults_of(scene, {cube_facts()}).empty());
+    }
+}
+
+TEST(MakePlan, RefusesWhatIsOverALimitWithTheNumber)
+{
+    MeshFacts big = cube_facts();
+    big.triangles = 50'000'001;
+    const auto triangles = faults_of(one_mesh(), {big}, {}, Limits::none());
+    EXPECT_TRUE(triangles.empty());
+    const auto refused = faults_of(one_mesh(), {big});
+    ASSERT_FALSE(refused.empty());
+    EXPECT_EQ(refused[0].code, "over_limit");
+    EXPECT_THAT(refused[0].detail, AllOf(HasSubstr("50000001"), HasSubstr("50000000")));
+
+    RenderSettings huge;
+    huge.image.width_px = huge.image.height_px = 32768;
+    Limits limits;
+    limits.image_pixels = 1ull << 40;
+    const auto memory = faults_of(one_mesh(), {cube_facts()}, huge, limits);
+    ASSERT_EQ(memory.size(), 1u);
+    EXPECT_EQ(memory[0].pointer, "/image");
+    EXPECT_THAT(memory[0].detail, HasSubstr("render_memory_bytes"));
+    huge.image.region = renderer::PixelRect{0, 0, 16, 16}; // a crop costs only itself
+    EXPECT_TRUE(faults_of(one_mesh(), {cube_facts()}, huge, limits).empty());
+}
+
+TEST(MakePlan, RefusesPlacesBeyondItsReach)
+{
+    SceneDescription scene = one_mesh();
+    scene.objects[0].world_from_object = Affine3::translate({1e19, 0, 0});
+    const auto faults = faults_of(scene, {cube_facts()});
+    ASSERT_EQ(faults.size(), 1u);
+    EXPECT_EQ(faults[0].pointer, "/scene/objects/0/transform");
+}
+
+TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
+{
+    MeshFacts facts = cube_facts();
+    facts.has_normals = facts.has_materials = facts.has_textures = true;
+    SceneDescription scene = one_mesh();
+    const Plan plan = plan_of(scene, {facts});
+    EXPECT_FALSE(plan.two_levels);
+    EXPECT_TRUE(plan.keep_normals);
+    EXPECT_THAT(names(plan.models.used),
+                IsSupersetOf({"assumed_camera",
+                              "assumed_sky",
+                              "assumed_sun",
+                              "direct",
+                              "watertight_triangles",
+                              "smooth_normals",
+                              "diffuse",
+                              "directional_lights",
+                              "environment_light"}));
+    EXPECT_THAT(names(plan.models.skipped),
+                UnorderedElementsAre("indirect_light", "two_level_bvh", "textures"));
+    EXPECT_EQ(plan.camera_rays, 800u * 600 * 64);
+    EXPECT_EQ(plan.shadow_rays, 2u * 800 * 600 * 64);
+    EXPECT_GT(plan.memory_bytes, 800u * 600 * 24);
+
+    scene.materials.push_back({"shiny", renderer::PhongMaterial{}});
+    scene.objects[0].material = 0;
+    scene.objects[0].shading = renderer::Shading::flat;
+    scene.objects.emplace_back().shape = renderer::SphereShape{};
+    scene.lights.emplace_back(renderer::SpotLight{});
+    const Plan other = plan_of(scene, {facts});
+    EXPECT_TRUE(other.two_levels);
+    EXPECT_FALSE(other.keep_normals);
+    EXPECT_THAT(names(other.models.used),
+                IsSupersetOf({"two_level_bvh",
+                              "phong_normalized",
+                              "exact_spheres",
+                              "default_diffuse",
+                              "spot_lights",
+                              "hard_shadows"}));
+    EXPECT_THAT(names(other.models.skipped),
+                UnorderedElementsAre("indirect_light", "smooth_normals", "environment_light"));
+}
