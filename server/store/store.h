@@ -73,6 +73,7 @@ struct Lease {
 
 // `idempotency_key` empty: none. `body_digest`: of the request as sent, to tell a replay from a reuse of the key.
 struct SubmitRequest {
+    JobId id; // from make_job_id(), so that the caller knows it first; empty: the store makes one
     Tenant tenant;
     std::string idempotency_key;
     std::string body_digest;
