@@ -1,7 +1,9 @@
-// PreparedMesh: an imported mesh with its BVH, ready for rays; immutable, shared by scenes and jobs.
+// PreparedMesh: an imported mesh, or one part of it, with its BVH, ready for rays; immutable, shared by
+// scenes and jobs.
 //
 // Frame   rays are given in the mesh's own coordinates (object space).
-// Errors  prepare_mesh returns nullptr only when `stop` was requested; it throws std::bad_alloc like any builder.
+// Errors  prepare_* returns nullptr only when `stop` was requested; it throws std::bad_alloc like any
+// builder.
 #pragma once
 
 #include "renderer/description/settings.h"
@@ -14,14 +16,26 @@
 
 namespace renderer {
 
+class MeshBvh;
 class PreparedMesh;
 
 // Builds the BVH; deterministic: the same mesh and split give the same tree on any number of threads.
-std::shared_ptr<const PreparedMesh> prepare_mesh(Mesh mesh, BvhSplit split, ThreadPool& pool, std::stop_token stop = {});
+std::shared_ptr<const PreparedMesh>
+prepare_mesh(Mesh mesh, BvhSplit split, ThreadPool& pool, std::stop_token stop = {});
 
-const Mesh& mesh_of(const PreparedMesh& prepared);
-std::uint64_t size_bytes(const PreparedMesh& prepared);          // all memory it holds: what a cache counts
-std::uint64_t bvh_bytes(const PreparedMesh& prepared);           // nodes + leaves, without the vertices
+// Only the triangles of `part`, a run of the whole mesh's; the arrays stay shared with `whole`, and
+// primitives keep the numbers that they have there.
+std::shared_ptr<const PreparedMesh> prepare_part(const std::shared_ptr<const PreparedMesh>& whole,
+                                                 const MeshPart& part,
+                                                 BvhSplit split,
+                                                 ThreadPool& pool,
+                                                 std::stop_token stop = {});
+
+const Mesh& mesh_of(const PreparedMesh& prepared);   // of a part: the whole mesh
+const MeshBvh& bvh_of(const PreparedMesh& prepared); // see mesh_bvh.h
+std::uint64_t size_bytes(
+    const PreparedMesh& prepared); // all memory it holds: what a cache counts; a part: without the arrays
+std::uint64_t bvh_bytes(const PreparedMesh& prepared);            // nodes + leaves, without the vertices
 std::uint64_t degenerate_triangles(const PreparedMesh& prepared); // zero area: kept in the count, never hit
 
 } // namespace renderer

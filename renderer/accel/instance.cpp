@@ -1,0 +1,156 @@
+#include "renderer/accel/instance.h"
+
+#include "renderer/geometry/rounding.h"
+
+#include <cmath>
+
+namespace renderer {
+
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+    using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+// |M| v + |t| and |M| v: how large the terms of a transform can be for |p| <= v.
+Vec3d reach_of_vector(const Affine3& m, Vec3d v)
+{
+    return {dot(abs(m.rows[0]), v), dot(abs(m.rows[1]), v), dot(abs(m.rows[2]), v)};
+}
+Vec3d reach_of_point(const Affine3& m, Vec3d v)
+{
+    return reach_of_vector(m, v) + abs(m.translation);
+}
+
+// Centre and half extent of the shape in its own frame.
+Bounds3d object_bounds(const InstanceGeometry& geometry)
+{
+    return std::visit(Overloaded{[](const MeshGeometry& m) {
+                                     const Bounds3f& box = m.bvh->bounds();
+                                     return Bounds3d{to_double(box.lower), to_double(box.upper)};
+                                 },
+                                 [](const Sphere& s) {
+                                     const Vec3d r = Vec3d{1, 1, 1} * s.radius;
+                                     return Bounds3d{-r, r};
+                                 },
+                                 [](const Disk& d) {
+                                     const Vec3d r{d.radius, d.radius, 0};
+                                     return Bounds3d{-r, r};
+                                 }},
+                      geometry);
+}
+
+} // namespace
+
+Instance::Instance(InstanceGeometry geometry,
+                   const Affine3& world_from_object,
+                   const Affine3& object_from_world,
+                   bool visible_to_camera)
+    : geometry_(geometry), world_from_object_(world_from_object), object_from_world_(object_from_world),
+      identity_(world_from_object == Affine3{}), visible_to_camera_(visible_to_camera)
+{
+}
+
+std::optional<Instance>
+Instance::place(InstanceGeometry geometry, const Affine3& world_from_object, bool visible_to_camera)
+{
+    const std::optional<Affine3> inverse = world_from_object.inverse();
+    if (!inverse) return std::nullopt;
+    return Instance(geometry, world_from_object, *inverse, visible_to_camera);
+}
+
+// How far a world point within `world_reach` of the origin may be off after the trip to object space, told in
+// the world; the inverse matrix is itself only as good as the forward one lets it be.
+Vec3d Instance::round_trip_error(Vec3d world_reach) const
+{
+    const Vec3d there = reach_of_vector(world_from_object_, reach_of_point(object_from_world_, world_reach));
+    const Vec3d matrix = reach_of_vector(world_from_object_, reach_of_vector(object_from_world_, there));
+    return (there + matrix) * gamma<double>(12);
+}
+
+Bounds3d Instance::world_bounds() const
+{
+    const Bounds3d box = object_bounds(geometry_);
+    if (box.empty() || identity_) return box;
+    const Vec3d center = box.center(), half = box.upper * 0.5 - box.lower * 0.5;
+    const Vec3d middle = world_from_object_.point(center);
+    Vec3d extent = reach_of_vector(world_from_object_, half);
+    const auto& rows = world_from_object_.rows;
+    if (const Sphere* s = std::get_if<Sphere>(&geometry_))
+        extent = Vec3d{length(rows[0]), length(rows[1]), length(rows[2])} * s->radius;
+    const Vec3d reach = reach_of_point(world_from_object_, abs(center) + half);
+    extent = extent + reach * gamma<double>(12) + round_trip_error(reach);
+    return {middle - extent, middle + extent};
+}
+
+Ray Instance::to_object(const Ray& world_ray) const
+{
+    if (identity_) return world_ray;
+    return {object_from_world_.point(world_ray.origin),
+            object_from_world_.vector(world_ray.direction),
+            world_ray.t_min,
+            world_ray.t_max};
+}
+
+std::optional<Instance::Candidate> Instance::closest_hit(const Ray& world_ray) const
+{
+    const Ray ray = to_object(world_ray);
+    const auto exact = [&](const auto& shape) -> std::optional<Candidate> {
+        if (const std::optional<double> t = intersect(shape, ray)) return Candidate{*t, 0, {}};
+        return std::nullopt;
+    };
+    return std::visit(Overloaded{[&](const MeshGeometry& m) -> std::optional<Candidate> {
+                                     const std::optional<MeshHit> hit = m.bvh->closest_hit(ray);
+                                     if (!hit) return std::nullopt;
+                                     return Candidate{hit->t, hit->primitive, hit->barycentrics};
+                                 },
+                                 [&](const Sphere& s) { return exact(s); },
+                                 [&](const Disk& d) { return exact(d); }},
+                      geometry_);
+}
+
+bool Instance::any_hit(const Ray& world_ray) const
+{
+    const Ray ray = to_object(world_ray);
+    return std::visit(Overloaded{[&](const MeshGeometry& m) { return m.bvh->any_hit(ray); },
+                                 [&](const Sphere& s) { return intersect(s, ray).has_value(); },
+                                 [&](const Disk& d) { return intersect(d, ray).has_value(); }},
+                      geometry_);
+}
+
+SurfacePoint Instance::to_world(const SurfacePoint& object_point) const
+{
+    if (identity_) return object_point;
+    const Vec3d reach = reach_of_point(world_from_object_, abs(object_point.position));
+    SurfacePoint world;
+    world.position = world_from_object_.point(object_point.position);
+    world.error = reach_of_vector(world_from_object_, object_point.error) + reach * gamma<double>(4) +
+                  round_trip_error(abs(world.position));
+    world.normal = normalize(object_from_world_.transposed_vector(object_point.normal));
+    return world;
+}
+
+SceneHit Instance::resolve(const Ray& world_ray, const Candidate& candidate) const
+{
+    const auto exact = [&](const auto& shape) { return point_at(shape, to_object(world_ray), candidate.t); };
+    const SurfacePoint object = std::visit(
+        Overloaded{
+            [&](const MeshGeometry& m) {
+                return surface_point(*m.mesh, {candidate.t, candidate.primitive, candidate.barycentrics});
+            },
+            [&](const Sphere& s) { return exact(s); },
+            [&](const Disk& d) { return exact(d); }},
+        geometry_);
+    SceneHit hit;
+    hit.t = candidate.t;
+    hit.primitive = candidate.primitive;
+    hit.barycentrics = candidate.barycentrics;
+    hit.object_position = object.position;
+    hit.point = to_world(object);
+    return hit;
+}
+
+} // namespace renderer

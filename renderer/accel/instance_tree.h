@@ -1,0 +1,42 @@
+// InstanceTree: the upper of the two levels: every object of a scene, found by its box in the world.
+//
+// Frame      the world, in double.
+// Ties       the least (t, instance, primitive) wins, whatever the order of the tree.
+// Threads    immutable; rays may be traced from any number of threads.
+// Cost       one instance alone is asked directly: the level costs nothing where a scene does not need it.
+#pragma once
+
+#include "renderer/accel/bvh.h"
+#include "renderer/accel/instance.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace renderer {
+
+class InstanceTree {
+public:
+    // Instances keep their numbers; those with nothing to hit are never found.
+    InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool);
+
+    std::optional<SceneHit> closest_hit(const Ray& ray, RayKind kind = RayKind::other) const;
+    bool any_hit(const Ray& ray, RayKind kind = RayKind::other) const;
+    // The same answer from every instance in turn: for tests and for measuring.
+    std::optional<SceneHit> closest_hit_brute_force(const Ray& ray, RayKind kind = RayKind::other) const;
+
+    std::span<const Instance> instances() const { return instances_; }
+    const Bounds3d& bounds() const { return bounds_; } // empty where nothing can be hit
+    std::uint64_t size_bytes() const { return bvh_.size_bytes() + instances_.capacity() * sizeof(Instance); }
+
+private:
+    struct Best;
+    void consider(const Ray& ray, RayKind kind, std::uint32_t number, Best& best) const;
+    std::optional<SceneHit> resolve(const Ray& ray, const Best& best) const;
+
+    std::vector<Instance> instances_;
+    Bvh<double> bvh_; // `order` holds instance numbers
+    Bounds3d bounds_;
+};
+
+} // namespace renderer

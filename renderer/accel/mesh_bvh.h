@@ -1,0 +1,84 @@
+// MeshBvh: the triangles of a mesh, or of a run of them, made ready for rays.
+//
+// Frame      object space: the mesh's own coordinates. Rays in double.
+// Precision  what is hit is decided in double, by intersect_watertight on the float corners, so a hit is a
+// pure function
+//            of (ray, triangle). Boxes and a quick first look at each triangle work in float, on a copy of
+//            the ray whose origin was first brought to the mesh's bounds, and pass whatever float cannot
+//            tell: they only save work. Hence every kind of tree, and no tree at all, gives the same hit to
+//            the last bit.
+// Ties       the least (t, primitive) wins.
+// Threads    immutable after build; rays may be traced from any number of threads.
+#pragma once
+
+#include "renderer/accel/bvh.h"
+#include "renderer/description/settings.h"
+#include "renderer/geometry/mesh.h"
+#include "renderer/geometry/ray.h"
+#include "renderer/geometry/surface_point.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+namespace renderer {
+
+struct MeshHit {
+    double t;
+    std::uint32_t
+        primitive;      // triangle of the mesh, counted over the whole mesh also where a run was prepared
+    Vec3d barycentrics; // weights of its three corners
+};
+
+struct TriangleRun {
+    std::uint32_t first = 0, count = 0;
+};
+
+// Position, error bound and normal of a hit, in object space.
+inline SurfacePoint surface_point(const Mesh& mesh, const MeshHit& hit)
+{
+    const Triangle& v = mesh.triangles[hit.primitive];
+    return triangle_point(mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], hit.barycentrics);
+}
+
+class MeshBvh {
+public:
+    // The mesh has passed validate_mesh, the run lies within it; the mesh is only read. Nothing if `stop` was
+    // requested.
+    static std::optional<MeshBvh>
+    build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& pool, std::stop_token stop = {});
+
+    std::optional<MeshHit> closest_hit(const Ray& ray) const;
+    bool any_hit(const Ray& ray) const;
+    // The same answers from every triangle in turn: for tests and for measuring.
+    std::optional<MeshHit> closest_hit_brute_force(const Ray& ray) const;
+    bool any_hit_brute_force(const Ray& ray) const;
+
+    const Bounds3f& bounds() const { return bounds_; } // of triangles with an area; empty if there is none
+    std::uint64_t degenerate_triangles() const { return degenerate_; }
+    std::uint64_t size_bytes() const; // nodes, leaves: all that traversal reads
+    std::uint64_t node_bytes() const; // the nodes' share of it
+    unsigned depth() const { return bvh_.depth; }
+
+private:
+    // A leaf's own copy of a triangle, so that a test reads one place.
+    struct LeafTriangle {
+        Vec3f a, b, c;
+        std::uint32_t primitive;
+    };
+    struct KernelRay;
+
+    static bool test(const KernelRay& ray, const LeafTriangle& triangle, std::optional<MeshHit>& best);
+    template <bool kAnyHit>
+    std::optional<MeshHit> trace(const Ray& ray) const;
+
+    Bvh<float> bvh_; // in scaled coordinates, `order` emptied into leaves_
+    std::vector<LeafTriangle> leaves_;
+    Bounds3f bounds_;
+    float scale_ = 1; // power of two that brings coordinates near 1 where they are far from it
+    std::uint64_t degenerate_ = 0;
+};
+
+} // namespace renderer

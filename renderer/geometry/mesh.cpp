@@ -1,0 +1,31 @@
+#include "renderer/geometry/mesh.h"
+
+namespace renderer {
+
+Bounds3f Mesh::bounds() const
+{
+    Bounds3f box;
+    for (const Triangle& triangle : triangles)
+        for (const std::uint32_t vertex : triangle)
+            box.extend(positions[vertex]);
+    return box;
+}
+
+std::uint64_t Mesh::size_bytes() const
+{
+    const auto bytes = [](const auto& array) {
+        return static_cast<std::uint64_t>(array.capacity()) * sizeof(*array.data());
+    };
+    std::uint64_t sum = bytes(positions) + bytes(normals) + bytes(uvs) + bytes(triangles) +
+                        bytes(triangle_materials) + bytes(materials) + bytes(parts);
+    for (const MeshMaterial& material : materials) {
+        sum += material.name.capacity() + bytes(material.textures);
+        for (const std::string& texture : material.textures)
+            sum += texture.capacity();
+    }
+    for (const MeshPart& part : parts)
+        sum += part.name.capacity();
+    return sum;
+}
+
+} // namespace renderer
