@@ -1,0 +1,56 @@
+#include "server/http/body.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace server {
+
+api::ProblemDetails
+over_limit(const std::string& what, std::uint64_t renderer::Limits::*limit, const renderer::Limits& limits)
+{
+    std::string name, unit;
+    for (const renderer::LimitEntry& entry : renderer::limit_table())
+        if (entry.value == limit) {
+            name = entry.name;
+            unit = *entry.unit != '\0' ? std::string(" ") + entry.unit : std::string();
+        }
+    std::string flag = "--limit-" + name;
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    return problem(413,
+                   "over_limit",
+                   what + " is over the limit " + name + ", " + std::to_string(limits.*limit) + unit +
+                       "; the service's flag " + flag + " raises it");
+}
+
+std::optional<api::ProblemDetails> refuse_by_head(const Exchange& exchange,
+                                                  const std::string& what,
+                                                  std::uint64_t renderer::Limits::*limit,
+                                                  const renderer::Limits& limits)
+{
+    if (exchange.has_header("Transfer-Encoding")) return std::nullopt;
+    // The guard gives every request without one a Content-Length of 0.
+    const std::string text = exchange.header("Content-Length");
+    std::uint64_t length = 0;
+    std::from_chars(text.data(), text.data() + text.size(), length);
+    if (length > limits.*limit) return over_limit(what, limit, limits);
+    return std::nullopt;
+}
+
+std::optional<api::ProblemDetails> read_body(const Exchange& exchange,
+                                             const std::function<bool(std::string_view)>& take)
+{
+    bool stopped = false;
+    const bool complete = (*exchange.content)([&](const char* data, std::size_t size) {
+        stopped = stopped || !take({data, size});
+        return !stopped;
+    });
+    // httplib leaves a status of its own when reading failed; ours is set by the reply.
+    exchange.response.status = -1;
+    if (complete || stopped) return std::nullopt;
+    return problem(
+        400,
+        "incomplete_body",
+        "the body ended early, came too slowly, or is not in the chunks that Transfer-Encoding promises");
+}
+
+} // namespace server

@@ -1,0 +1,31 @@
+// Reading a request's body within a limit, whoever frames it: bytes are counted as they come.
+#pragma once
+
+#include "renderer/description/limits.h"
+#include "server/http/exchange.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace server {
+
+// 413 that names the limit, its value and the flag that raises it. `what` begins the sentence: "the JSON
+// body".
+api::ProblemDetails
+over_limit(const std::string& what, std::uint64_t renderer::Limits::*limit, const renderer::Limits& limits);
+
+// What the head says already: 411 without length and chunks, 413 when the length is over `limit_bytes`.
+std::optional<api::ProblemDetails> refuse_by_head(const Exchange& exchange,
+                                                  const std::string& what,
+                                                  std::uint64_t renderer::Limits::*limit,
+                                                  const renderer::Limits& limits);
+
+// Gives the body to `take` piece by piece. 400 when it ends before it is complete; whether `take` stopped it
+// (by false) is for the caller to know, and then nothing is returned.
+std::optional<api::ProblemDetails> read_body(const Exchange& exchange,
+                                             const std::function<bool(std::string_view)>& take);
+
+} // namespace server

@@ -1,0 +1,69 @@
+// GuardedServer: httplib's server behind our guard: a listener, its threads, and for each connection the loop
+// that reads a head, refuses what is doubtful, lets httplib have the rest, and logs a line a request.
+//
+// Every answer carries X-Request-Id; every error, also httplib's own, is application/problem+json.
+// Threads  start() and stop() from one; `dispatch` is called from many at once.
+// Errors   start() throws std::system_error that names host and port.
+#pragma once
+
+#include "server/http/guard/connection_stream.h"
+#include "server/http/guard/worker_pool.h"
+#include "server/log/log.h"
+
+#include <httplib.h>
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <thread>
+
+namespace server {
+
+struct GuardOptions {
+    std::size_t threads = 16;
+    std::size_t queue = 256; // connections that wait for a thread; beyond: 503 at once
+    std::size_t requests_per_connection = 1000;
+    StreamLimits stream;
+};
+
+// What a handler finds among a request's headers beside those that the client sent. Content-Type is given as
+// kBodyType, so that httplib leaves multipart and form bodies alone.
+inline constexpr const char* kRequestId = "X-Request-Id";
+inline constexpr const char* kBodyType = "Body-Type";
+
+// `content` is null where the method has no body. request.progress(0, 0) is false as soon as waiting is of no
+// more use: the client has gone, or the server stops. Must not throw.
+using Dispatch =
+    std::function<void(const httplib::Request&, httplib::Response&, const httplib::ContentReader* content)>;
+
+class GuardedServer final : public httplib::Server {
+public:
+    GuardedServer(const GuardOptions& options, const Log& log, const Dispatch& dispatch);
+    ~GuardedServer() override;
+
+    void start(const std::string& host, int port);
+    void stop(); // answers what is under way
+    int port() const { return port_; }
+
+private:
+    bool process_and_close_socket(socket_t sock) override;
+    void register_handlers(const Dispatch& dispatch);
+    void serve(ConnectionStream& stream);
+    bool serve_one(ConnectionStream& stream, const std::string& block, bool last);
+    void refuse(ConnectionStream& stream, const RequestHead& head, const HeadFault& fault) const;
+    void give_headers(const RequestHead& head, ConnectionStream& stream, httplib::Request& request) const;
+    void log_request(const ConnectionStream& stream,
+                     const RequestHead& head,
+                     std::chrono::steady_clock::time_point since) const;
+
+    GuardOptions options_;
+    const Log& log_;
+    int port_ = 0;
+    socket_t listener_ = -1;
+    std::atomic<WorkerPool*> pool_ = nullptr; // httplib owns it
+    std::atomic<bool> stopping_ = false;
+    std::thread accepting_;
+    std::atomic<std::thread::id> accepting_id_;
+};
+
+} // namespace server

@@ -1,0 +1,72 @@
+#include "server/http/guard/worker_pool.h"
+
+#include <system_error>
+
+namespace server {
+
+WorkerPool::~WorkerPool()
+{
+    shutdown();
+}
+
+bool WorkerPool::add_thread()
+{
+    if (threads_.size() >= max_threads_) return false;
+    try {
+        threads_.emplace_back([this] { work(); });
+        return true;
+    } catch (const std::system_error&) {
+        return false; // no more threads to be had: serve with those that are
+    }
+}
+
+void WorkerPool::enqueue(std::function<void()> task)
+{
+    {
+        const std::lock_guard lock(mutex_);
+        const bool taken =
+            idle_ > queue_.size() || add_thread() || (queue_.size() < max_queue_ && !threads_.empty());
+        if (taken) {
+            queue_.push_back(std::move(task));
+            changed_.notify_one();
+            return;
+        }
+    }
+    task();
+}
+
+void WorkerPool::work()
+{
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        ++idle_;
+        changed_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
+        --idle_;
+        if (queue_.empty()) return;
+        const std::function<void()> task = std::move(queue_.front());
+        queue_.pop_front();
+        lock.unlock();
+        task();
+        lock.lock();
+    }
+}
+
+bool WorkerPool::backlog() const
+{
+    const std::lock_guard lock(mutex_);
+    return queue_.size() > idle_;
+}
+
+void WorkerPool::shutdown()
+{
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+        changed_.notify_all();
+    }
+    for (std::thread& thread : threads_)
+        thread.join();
+    threads_.clear();
+}
+
+} // namespace server

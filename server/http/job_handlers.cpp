@@ -1,0 +1,236 @@
+#include "server/http/job_handlers.h"
+
+#include "server/http/list_query.h"
+#include "server/http/negotiation.h"
+#include "server/http/spelling.h"
+#include "server/http/submission.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace server {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+// How often a waiting request looks whether its client is still there.
+constexpr milliseconds kGlance{250};
+
+bool is_job_id(const std::string& text)
+{
+    return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+api::ProblemDetails no_such_job(const std::string& id)
+{
+    return problem(
+        404, "not_found", "there is no job \"" + printable(id) + "\": GET /v1/jobs lists those there are");
+}
+
+std::string path_of(const std::string& id)
+{
+    return "/v1/jobs/" + id;
+}
+
+api::ProblemDetails only_png()
+{
+    return problem(406, "not_acceptable", "the picture is to be had as image/png alone: Accept: image/png");
+}
+
+// queue;dur=3, render;dur=120: in milliseconds, as browsers show them.
+std::string server_timing(const api::JobView& job)
+{
+    std::string text;
+    const auto add = [&](const char* name, std::optional<std::int64_t> from, std::optional<std::int64_t> to) {
+        if (from && to)
+            text += std::string(text.empty() ? "" : ", ") + name +
+                    ";dur=" + std::to_string(std::max<std::int64_t>(*to - *from, 0));
+    };
+    add("queue", job.created_ms, job.started_ms);
+    add("render", job.started_ms, job.finished_ms);
+    return text;
+}
+
+} // namespace
+
+void JobHandlers::add_routes(Router& router)
+{
+    const auto route = [&](const char* method, const char* pattern, void (JobHandlers::*handle)(Exchange&)) {
+        router.add({method, pattern, {}, [this, handle](Exchange& exchange) {
+                        const auto id = exchange.path.find("id");
+                        if (id != exchange.path.end() && !is_job_id(id->second))
+                            return reply_problem(exchange, no_such_job(id->second));
+                        (this->*handle)(exchange);
+                    }});
+    };
+    route("POST", "/v1/jobs", &JobHandlers::submit);
+    router.add({"GET", "/v1/jobs", list_query_keys(), [this](Exchange& exchange) { list(exchange); }});
+    route("GET", "/v1/jobs/{id}", &JobHandlers::get);
+    route("DELETE", "/v1/jobs/{id}", &JobHandlers::remove);
+    route("POST", "/v1/jobs/{id}/cancel", &JobHandlers::cancel);
+    route("GET", "/v1/jobs/{id}/image", &JobHandlers::image);
+    route("GET", "/v1/jobs/{id}/report", &JobHandlers::report);
+    route("GET", "/v1/jobs/{id}/scene", &JobHandlers::scene);
+}
+
+bool JobHandlers::enter_wait(Exchange& exchange, std::optional<Waiters::Place>& place, std::uint64_t& seconds)
+{
+    const auto preferred = preferred_wait_s(exchange.header("Prefer"));
+    seconds = std::min(preferred.value_or(0), limits_.wait_s);
+    if (!preferred) return true;
+    if (seconds > 0) place = waiters_.enter();
+    if (seconds > 0 && !place) {
+        reply_problem(exchange,
+                      problem(429,
+                              "too_many_waiters",
+                              std::to_string(limits_.waiters) +
+                                  " requests wait already, the limit waiters; ask without Prefer: wait, "
+                                  "or raise it with the service's flag --limit-waiters"));
+        return false;
+    }
+    exchange.response.set_header("Preference-Applied", "wait=" + std::to_string(seconds));
+    return true;
+}
+
+std::optional<api::JobView> JobHandlers::wait(Exchange& exchange,
+                                              const std::string& id,
+                                              std::uint64_t seconds,
+                                              const std::string& known_etag)
+{
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+    for (;;) {
+        const auto left = std::chrono::ceil<milliseconds>(end - std::chrono::steady_clock::now());
+        auto view = jobs_.wait(id, std::clamp(left, milliseconds(0), kGlance), known_etag);
+        if (!view || api::is_final(view->state) || (!known_etag.empty() && etag_of(*view) != known_etag) ||
+            left <= kGlance || !exchange.still_wanted())
+            return view;
+    }
+}
+
+void JobHandlers::submit(Exchange& exchange)
+{
+    const Acceptance accept = read_accept(exchange.header("Accept"));
+    if (accept.only_images && !accept.png) return reply_problem(exchange, only_png());
+    auto read = read_submission(exchange, store_, blobs_, limits_);
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&read))
+        return reply_problem(exchange, std::move(*refusal));
+    std::optional<Waiters::Place> place;
+    std::uint64_t seconds = 0;
+    if (!enter_wait(exchange, place, seconds)) return;
+    auto submitted = jobs_.submit(std::get<SubmitWords>(read));
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&submitted))
+        return reply_problem(exchange, std::move(*refusal), jobs_.estimated_wait_s());
+    auto& answer = std::get<SubmitAnswer>(submitted);
+    if (place) {
+        const auto view = wait(exchange, answer.job.id, seconds, {});
+        if (!view) return reply_problem(exchange, no_such_job(answer.job.id)); // deleted meanwhile
+        answer.job = *view;
+    }
+    answer_submitted(exchange, answer, place.has_value());
+}
+
+void JobHandlers::answer_submitted(Exchange& exchange, const SubmitAnswer& answer, bool waited)
+{
+    const api::JobView& job = answer.job;
+    exchange.response.set_header("Location", path_of(job.id));
+    if (answer.replayed) exchange.response.set_header("Idempotency-Replayed", "true");
+    const bool failed_by_client = job.state == api::JobState::failed && job.error && job.error->status < 500;
+    const bool picture = read_accept(exchange.header("Accept")).only_images;
+    if (failed_by_client && (waited || picture)) return reply_problem(exchange, *job.error);
+    // Whoever takes nothing but pictures gets one or an error, never JSON in a file that is called .png.
+    if (picture) return reply_image(exchange, job.id);
+    exchange.response.set_header("ETag", '"' + etag_of(job) + '"');
+    const bool done = waited && api::is_final(job.state);
+    if (!done) exchange.response.set_header("Retry-After", "1");
+    reply_json(exchange, done ? 200 : 202, api::write_job_view(job));
+}
+
+void JobHandlers::list(Exchange& exchange)
+{
+    auto query = read_list_query(exchange);
+    if (auto* faults = std::get_if<std::vector<api::Problem>>(&query))
+        return reply_problem(exchange, api::problem_from_faults(422, "invalid_query", std::move(*faults)));
+    auto page = jobs_.list(std::get<ListQuery>(query));
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&page))
+        return reply_problem(exchange, std::move(*refusal));
+    reply_json(exchange, 200, std::get<std::string>(page));
+}
+
+void JobHandlers::get(Exchange& exchange)
+{
+    const std::string& id = exchange.path.at("id");
+    auto view = jobs_.get(id);
+    if (!view) return reply_problem(exchange, no_such_job(id));
+    std::optional<Waiters::Place> place;
+    std::uint64_t seconds = 0;
+    if (!enter_wait(exchange, place, seconds)) return;
+    // A change since what the client knows; where it says nothing, since now.
+    const std::string now = etag_of(*view);
+    const bool known =
+        !exchange.has_header("If-None-Match") || names_etag(exchange.header("If-None-Match"), now);
+    if (place && known && !api::is_final(view->state)) view = wait(exchange, id, seconds, now);
+    if (!view) return reply_problem(exchange, no_such_job(id));
+    exchange.response.set_header("Cache-Control", "no-cache");
+    reply_json_with_etag(exchange, api::write_job_view(*view), etag_of(*view));
+}
+
+void JobHandlers::cancel(Exchange& exchange)
+{
+    const std::string& id = exchange.path.at("id");
+    const auto view = jobs_.cancel(id);
+    if (!view) return reply_problem(exchange, no_such_job(id));
+    reply_json(exchange, 200, api::write_job_view(*view));
+}
+
+void JobHandlers::remove(Exchange& exchange)
+{
+    const std::string& id = exchange.path.at("id");
+    if (!jobs_.remove(id)) return reply_problem(exchange, no_such_job(id));
+    exchange.response.status = 204;
+}
+
+void JobHandlers::image(Exchange& exchange)
+{
+    const std::string& id = exchange.path.at("id");
+    if (!read_accept(exchange.header("Accept")).png) return reply_problem(exchange, only_png());
+    std::optional<Waiters::Place> place;
+    std::uint64_t seconds = 0;
+    if (!enter_wait(exchange, place, seconds)) return;
+    if (place) wait(exchange, id, seconds, {});
+    reply_image(exchange, id);
+}
+
+void JobHandlers::reply_image(Exchange& exchange, const std::string& id)
+{
+    auto found = jobs_.image(id);
+    const auto view = jobs_.get(id);
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&found))
+        return reply_problem(exchange, std::move(*refusal));
+    const auto& picture = std::get<JobImage>(found);
+    httplib::Response& response = exchange.response;
+    response.set_header("Cache-Control", "private, immutable");
+    response.set_header("Content-Disposition", "inline; filename=\"" + id + ".png\"");
+    response.set_header("Link", "<" + path_of(id) + "/report>; rel=\"describedby\"");
+    const std::string timing = view ? server_timing(*view) : std::string();
+    if (!timing.empty()) response.set_header("Server-Timing", timing);
+    reply_payload(exchange, {picture.png, picture.png->size(), picture.digest, "image/png"});
+}
+
+void JobHandlers::report(Exchange& exchange)
+{
+    auto text = jobs_.report(exchange.path.at("id"));
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&text))
+        return reply_problem(exchange, std::move(*refusal));
+    reply_json(exchange, 200, std::get<std::string>(text));
+}
+
+void JobHandlers::scene(Exchange& exchange)
+{
+    auto text = jobs_.scene(exchange.path.at("id"));
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&text))
+        return reply_problem(exchange, std::move(*refusal));
+    reply_json(exchange, 200, std::get<std::string>(text));
+}
+
+} // namespace server

@@ -1,0 +1,83 @@
+#include "server/http/list_query.h"
+
+#include "server/http/spelling.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace server {
+
+namespace {
+
+constexpr std::uint32_t kMaxPage = 200;
+
+// `running` is every job that a worker has, also while it prepares or is being canceled.
+const std::vector<std::pair<std::string, StoredState>>& states()
+{
+    static const std::vector<std::pair<std::string, StoredState>> names{{"queued", StoredState::queued},
+                                                                        {"running", StoredState::leased},
+                                                                        {"succeeded", StoredState::succeeded},
+                                                                        {"failed", StoredState::failed},
+                                                                        {"canceled", StoredState::canceled},
+                                                                        {"expired", StoredState::expired}};
+    return names;
+}
+
+std::optional<api::Problem> read_state(const std::string& text, ListQuery& query)
+{
+    std::vector<std::string> known;
+    std::string all;
+    for (const auto& [name, state] : states()) {
+        if (name == text) query.state = state;
+        known.push_back(name);
+        all += (all.empty() ? "" : ", ") + name;
+    }
+    if (query.state) return std::nullopt;
+    const std::string near = nearest(text, known);
+    return api::Problem{"",
+                        "invalid_parameter",
+                        "state \"" + printable(text) + "\" is not known" +
+                            (near.empty() ? "" : "; did you mean \"" + near + "\"?") + " (known: " + all +
+                            ")"};
+}
+
+} // namespace
+
+std::vector<std::string> list_query_keys()
+{
+    return {"state", "label", "limit", "cursor"};
+}
+
+std::variant<ListQuery, std::vector<api::Problem>> read_list_query(const Exchange& exchange)
+{
+    ListQuery query;
+    std::vector<api::Problem> faults;
+    if (const auto state = exchange.query("state"))
+        if (auto fault = read_state(*state, query)) faults.push_back(*std::move(fault));
+    if (const auto label = exchange.query("label")) {
+        const std::size_t colon = label->find(':');
+        if (colon == std::string::npos || colon == 0)
+            faults.push_back({"", "invalid_parameter", "label is name:value"});
+        else
+            query.label = {label->substr(0, colon), label->substr(colon + 1)};
+    }
+    if (const auto limit = exchange.query("limit")) {
+        const auto [stop, error] = std::from_chars(limit->data(), limit->data() + limit->size(), query.limit);
+        if (error != std::errc() || stop != limit->data() + limit->size() || query.limit < 1 ||
+            query.limit > kMaxPage)
+            faults.push_back({"", "out_of_range", "limit is a number from 1 to " + std::to_string(kMaxPage)});
+    }
+    if (const auto cursor = exchange.query("cursor")) {
+        query.cursor = *cursor;
+        const bool good =
+            !cursor->empty() && cursor->size() <= 256 &&
+            std::all_of(cursor->begin(), cursor->end(), [](char c) { return c > ' ' && c <= '~'; });
+        if (!good)
+            faults.push_back({"", "invalid_parameter", "cursor is what next_cursor of the page before said"});
+    }
+    if (!faults.empty()) return faults;
+    return query;
+}
+
+} // namespace server
