@@ -114,7 +114,7 @@ private:
     api::ProblemDetails named(int status, const char* code, const std::string& detail) const
     {
         return api::problem_from_faults(
-            status, "invalid_form", {{"", code, "\"" + printable(name_) + "\": " + detail}});
+            status, "invalid_form", {{"", code, std::string("\"") + printable(name_) + "\": " + detail}});
     }
     bool refuse(api::ProblemDetails details)
     {
