@@ -1,5 +1,5 @@
-// Which build this is: part of every `--version`, /v1/version, and of the render key, since only the same build
-// promises the same bytes.
+// Which build this is: part of every `--version`, /v1/version, and of the render key, since only the same
+// build promises the same bytes.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// JobRequest: a job's words, read and checked completely; and read_job, which turns bytes into one or into faults.
+// JobRequest: a job's words, read and checked completely; and read_job, which turns bytes into one or into
+// faults.
 #pragma once
 
 #include "api/problem.h"
@@ -31,21 +32,23 @@ struct JobRequest {
 
 // What read_job must know of the world around the request.
 struct ReadContext {
-    renderer::Limits limits;
-    std::map<std::string, std::string> files;                  // parts of a multipart request: name -> digest
-    std::function<bool(std::string_view digest)> has_asset;    // empty: every digest counts as there
+    renderer::Limits limits{};
+    std::map<std::string, std::string> files{};               // parts of a multipart request: name -> digest
+    std::function<bool(std::string_view digest)> has_asset{}; // empty: every digest counts as there
     bool local = false; // CLI: a mesh name that is not in `files` is a path, and no fault
 };
 
-// Either the request or the answer that refuses it (400 malformed_json, 413, 422 invalid_scene with every fault).
+// Either the request or the answer that refuses it (400 malformed_json, 413, 422 invalid_scene with every
+// fault).
 std::variant<JobRequest, ProblemDetails> read_job(std::string_view json, const ReadContext& context);
 
-// The job as JSON with every default written out; read_job reads it back to an equal request. Keys are sorted, so
-// this is also the canonical form whose digest names the render (without files, priority, labels, limits).
+// The job as JSON with every default written out; read_job reads it back to an equal request. Keys are
+// sorted, so this is also the canonical form whose digest names the render (without files, priority, labels,
+// limits).
 std::string write_job(const JobRequest& request, bool pretty = true);
 
-// What render_key is the digest of: scene, image, quality, seed, mesh digests (with the digests of `files`, which
-// an MTL or glTF may open), build. Two requests with the same text have the same picture.
+// What render_key is the digest of: scene, image, quality, seed, mesh digests (with the digests of `files`,
+// which an MTL or glTF may open), build. Two requests with the same text have the same picture.
 std::string canonical_render_text(const JobRequest& request);
 
 } // namespace api

@@ -3,6 +3,7 @@
 
 #include "api/problem.h"
 #include "renderer/description/report.h"
+#include "renderer/description/settings.h"
 
 #include <cstdint>
 #include <map>
@@ -12,7 +13,16 @@
 
 namespace api {
 
-enum class JobState : std::uint8_t { queued, preparing, running, canceling, succeeded, failed, canceled, expired };
+enum class JobState : std::uint8_t {
+    queued,
+    preparing,
+    running,
+    canceling,
+    succeeded,
+    failed,
+    canceled,
+    expired
+};
 
 bool is_final(JobState state);
 const char* name_of(JobState state);
@@ -23,11 +33,11 @@ struct JobView {
     JobState state = JobState::queued;
     std::int64_t created_ms = 0; // Unix time; written as RFC 3339 with milliseconds
     std::optional<std::int64_t> started_ms, finished_ms;
-    double progress = 0;         // 0 to 1
+    double progress = 0; // 0 to 1
     std::uint32_t samples_done = 0;
     std::optional<std::uint32_t> queue_position; // 0: next; while queued
     bool reused = false;
-    std::string render_key;      // "sha256:..."
+    std::string render_key; // "sha256:..."
     int priority = 50;
     std::map<std::string, std::string> labels;
     std::uint32_t attempts = 0;
@@ -38,8 +48,11 @@ struct JobView {
 std::string write_job_view(const JobView& view);
 std::string write_job_list(const std::vector<JobView>& views, const std::string& next_cursor);
 
-// report.json: accuracy, models, numerics, timing, geometry.
-std::string write_report(const renderer::RenderReport& report, const std::string& job_id, const std::string& render_key);
+// report.json: accuracy, models, numerics, timing, geometry. `requested`: the request's settings.quality.
+std::string write_report(const renderer::RenderReport& report,
+                         const std::string& job_id,
+                         const std::string& render_key,
+                         const renderer::QualitySettings& requested = {});
 
 // Asset answers.
 struct AssetInfo {

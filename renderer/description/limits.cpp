@@ -22,6 +22,7 @@ std::span<const LimitEntry> limit_table()
     static constexpr std::array table{
         LimitEntry{"json_bytes", &Limits::json_bytes, "bytes", "largest JSON body"},
         LimitEntry{"json_depth", &Limits::json_depth, "", "deepest nesting of JSON"},
+        LimitEntry{"json_values", &Limits::json_values, "", "values in a JSON body"},
         LimitEntry{"asset_bytes", &Limits::asset_bytes, "bytes", "largest asset"},
         LimitEntry{"total_asset_bytes", &Limits::total_asset_bytes, "bytes", "all assets together"},
         LimitEntry{"image_side_px", &Limits::image_side_px, "pixels", "longest side of a picture"},

@@ -10,6 +10,7 @@ namespace renderer {
 struct Limits {
     std::uint64_t json_bytes = 1u << 20;
     std::uint64_t json_depth = 64;
+    std::uint64_t json_values = 200'000;
     std::uint64_t asset_bytes = 256ull << 20;
     std::uint64_t total_asset_bytes = 20ull << 30;
     std::uint64_t image_side_px = 8192;

@@ -1,0 +1,218 @@
+// The members of a job, said once: what each is called, which struct member it fills, its range and its
+// meaning.
+//
+// Each fields(v, x) walks one struct. Three visitors take the walk: ReadFields fills it from JSON and
+// collects faults, WriteFields writes it, SchemaFields writes its JSON Schema; so the three cannot disagree.
+// Defaults are the member initialisers of the structs, nowhere else. `unbuilt` names members that scene.md
+// knows and this build does not.
+//
+// A visitor has: number, integer, boolean, word, only, point, direction, color, extents, object, group,
+// kinds, list, table, unbuilt, needs, exclude, and the few below that stand for one place alone: aim,
+// geometry, material_of, placement, files, labels, fail_on.
+#pragma once
+
+#include "api/fields/ranges.h"
+#include "api/job_request.h"
+#include "api/words/word_table.h"
+#include "renderer/description/scene_description.h"
+#include "renderer/description/settings.h"
+
+#include <concepts>
+#include <type_traits>
+
+namespace api {
+
+// T, or T seen by a visitor that only looks.
+template <typename X, typename T>
+concept Sees = std::same_as<std::remove_const_t<X>, T>;
+
+template <typename V, Sees<renderer::CameraDescription> X>
+void fields(V& v, X& camera)
+{
+    v.only("type", camera_words(), "projection");
+    v.point("position", camera.position, "the eye, metres");
+    v.aim(camera);
+    v.direction("up", camera.up, "which way is up in the picture; need not be perpendicular to the view");
+    v.number("fov_deg", camera.fov_deg, kFieldOfView, "vertical field of view, degrees");
+    v.unbuilt({"lens_radius", "focus_distance"}, "the camera is a pinhole: leave it out");
+    v.unbuilt({"height"}, "it belongs to orthographic cameras; available: perspective");
+}
+
+template <typename V, Sees<renderer::DiffuseMaterial> X>
+void fields(V& v, X& material)
+{
+    v.color("color", material.color, kReflectance, "share of the light that is scattered");
+    v.unbuilt({"normal_map", "two_sided"}, "leave it out");
+}
+
+template <typename V, Sees<renderer::PhongMaterial> X>
+void fields(V& v, X& material)
+{
+    v.color("diffuse", material.diffuse, kReflectance, "k_d");
+    v.color("specular", material.specular, kReflectance, "k_s");
+    v.number("shininess", material.shininess, kShininess, "exponent n of the highlight");
+    v.color("ambient", material.ambient, kRadiometric, "radiance added whatever the light, W/(m^2 sr)");
+    v.word("form", material.form, "classic: as Phong wrote it; normalized: conserves energy");
+    v.unbuilt({"normal_map", "two_sided"}, "leave it out");
+}
+
+template <typename V, Sees<renderer::MeshShape> X>
+void fields(V&, X&)
+{
+    // Its members need the scene around them: see geometry().
+}
+
+template <typename V, Sees<renderer::RectangleShape> X>
+void fields(V& v, X& shape)
+{
+    v.extents("size", "width and height, metres; in the xy plane, facing +z", shape.width_m, shape.height_m);
+}
+
+template <typename V, Sees<renderer::DiskShape> X>
+void fields(V& v, X& shape)
+{
+    v.number("radius", shape.radius_m, kSize, "metres; in the xy plane, facing +z");
+}
+
+template <typename V, Sees<renderer::BoxShape> X>
+void fields(V& v, X& shape)
+{
+    v.extents("size",
+              "metres along x, y, z; centred at the origin",
+              shape.size_m.x,
+              shape.size_m.y,
+              shape.size_m.z);
+}
+
+template <typename V, Sees<renderer::SphereShape> X>
+void fields(V& v, X& shape)
+{
+    v.number("radius", shape.radius_m, kSize, "metres; centred at the origin, exact");
+}
+
+template <typename V, Sees<renderer::ObjectDescription> X>
+void fields(V& v, X& object)
+{
+    v.geometry(object.shape);
+    v.material_of(object.material);
+    v.placement(object.world_from_object);
+    v.boolean("visible_to_camera", object.visible_to_camera, "false: seen only by its shadow");
+    v.word("shading", object.shading, "auto: smooth where the mesh has normals, else flat");
+}
+
+template <typename V, Sees<renderer::PointLight> X>
+void fields(V& v, X& light)
+{
+    v.point("position", light.position, "metres");
+    v.color("intensity", light.intensity, kRadiometric, "W/sr");
+}
+
+template <typename V, Sees<renderer::SpotLight> X>
+void fields(V& v, X& light)
+{
+    v.point("position", light.position, "metres");
+    v.direction("direction", light.direction, "the way the light travels");
+    v.color("intensity", light.intensity, kRadiometric, "W/sr within the inner cone");
+    v.number("inner_deg", light.inner_deg, kInnerAngle, "half angle of full intensity");
+    v.number("outer_deg", light.outer_deg, kOuterAngle, "half angle beyond which there is none");
+}
+
+template <typename V, Sees<renderer::DirectionalLight> X>
+void fields(V& v, X& light)
+{
+    v.direction("direction", light.direction, "the way the light travels");
+    v.color("irradiance", light.irradiance, kRadiometric, "W/m^2 on a surface that faces it");
+}
+
+template <typename V, Sees<renderer::NoEnvironment> X>
+void fields(V&, X&)
+{
+}
+
+template <typename V, Sees<renderer::ColorEnvironment> X>
+void fields(V& v, X& environment)
+{
+    v.color("radiance", environment.radiance, kRadiometric, "W/(m^2 sr), the same from everywhere");
+}
+
+template <typename V, Sees<renderer::TransportDescription> X>
+void fields(V& v, X& transport)
+{
+    v.word("type", transport.type, "auto: the plan decides; direct: one bounce from lights to eye");
+    v.unbuilt({"max_depth", "clamp"}, "direct light has one bounce and nothing to clamp: leave it out");
+}
+
+template <typename V, Sees<renderer::SceneDescription> X>
+void fields(V& v, X& scene)
+{
+    v.object("camera", scene.camera, "left out: it frames the whole scene");
+    v.kinds("environment", scene.environment, "left out: a neutral sky where nothing else shines");
+    v.table("materials", scene.materials, "materials by name");
+    v.list("objects", scene.objects, "objects", "what is seen");
+    v.list("lights", scene.lights, nullptr, "left out: one sun where nothing else shines");
+    v.object("transport", scene.transport, "how light travels");
+}
+
+template <typename V, Sees<renderer::PixelRect> X>
+void fields(V& v, X& rect)
+{
+    v.integer("x", rect.x, kOffset, "pixels from the left");
+    v.integer("y", rect.y, kOffset, "pixels from the top");
+    v.integer("width", rect.width, kExtent, "pixels");
+    v.integer("height", rect.height, kExtent, "pixels");
+    v.needs({"width", "height"});
+}
+
+template <typename V, Sees<renderer::ImageSettings> X>
+void fields(V& v, X& image)
+{
+    v.integer("width", image.width_px, kSide, "pixels");
+    v.integer("height", image.height_px, kSide, "pixels");
+    v.object("region", image.region, "crop: the same pixels as the whole picture has there");
+    v.number("exposure_ev", image.exposure_ev, kExposure, "radiance is multiplied by 2^exposure_ev");
+    v.word("tone", image.tone, "from radiance to display");
+    v.unbuilt({"layers"}, "available: the picture alone");
+}
+
+template <typename V, Sees<renderer::QualitySettings> X>
+void fields(V& v, X& quality)
+{
+    v.integer("samples", quality.samples, kSamples, "exactly this many a pixel");
+    v.number("time_s", quality.time_s, kSeconds, "the best picture in this time, in whole passes");
+    v.integer("max_samples", quality.max_samples, kSamples, "ceiling for time_s");
+    v.exclude("samples", "time_s", "for a ceiling beside time_s give max_samples");
+    v.unbuilt({"error", "confidence"}, "available: samples, time_s, max_samples");
+}
+
+template <typename V, Sees<renderer::AccelerationSettings> X>
+void fields(V& v, X& acceleration)
+{
+    v.group("bvh", "bounding volume hierarchies", [&](auto& bvh) {
+        bvh.word("split", acceleration.split, "how nodes are divided");
+        bvh.only("levels", bvh_level_words(), "trees over objects and within each mesh");
+    });
+    v.integer("threads", acceleration.threads, kThreads, "0: every core");
+    v.integer("tile", acceleration.tile_px, kTile, "side of a tile in pixels");
+    v.unbuilt({"bounds"}, "leave it out");
+}
+
+template <typename V, Sees<JobRequest> X>
+void fields(V& v, X& job)
+{
+    v.files(job.files);
+    v.object("scene", job.scene, "what is there");
+    v.object("image", job.settings.image, "the picture");
+    v.object("quality", job.settings.quality, "left out: the default number of samples");
+    v.group("limits", "bounds of this job", [&](auto& limits) {
+        limits.number("time_s", job.time_limit_s, kSeconds, "the job fails when it takes longer");
+    });
+    v.integer("seed", job.settings.seed, kSeed, "of every random number");
+    v.integer("priority", job.priority, kPriority, "larger first");
+    v.labels(job.labels);
+    v.fail_on(job.fail_on);
+    v.boolean("provenance", job.provenance, "false: the picture carries no note of its making");
+    v.object("acceleration", job.settings.acceleration, "for measuring only; no member changes the picture");
+    v.needs({"scene"});
+}
+
+} // namespace api

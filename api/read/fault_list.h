@@ -1,0 +1,34 @@
+// FaultList: the faults of one request while it is read.
+#pragma once
+
+#include "api/problem.h"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace api {
+
+// Faults that one answer lists; the others are counted.
+inline constexpr std::size_t kMostFaults = 1000;
+
+class FaultList {
+public:
+    void add(std::string pointer, std::string code, std::string detail);
+    void add(Problem fault);
+
+    bool empty() const { return faults_.empty(); }
+    std::size_t count() const { return faults_.size() + uncounted_; }
+    // Some fault is at `pointer` or below: rules that join several members then stay silent.
+    bool touches(std::string_view pointer) const;
+
+    // In the order of their pointers, whatever the order of members in the request; leaves the list empty.
+    std::vector<Problem> take();
+
+private:
+    std::vector<Problem> faults_;
+    std::size_t uncounted_ = 0; // found after kMostFaults
+};
+
+} // namespace api

@@ -1,0 +1,331 @@
+#include "api/read/read_fields.h"
+
+#include "api/json/pointer.h"
+#include "api/words/limit_words.h"
+#include "api/words/sentences.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace api {
+
+namespace {
+
+std::string words_of(const Range& range)
+{
+    std::string words = range.without_min ? "(" : "[";
+    words += text_of(range.min) + ", " + text_of(range.max);
+    words += range.without_max ? ')' : ']';
+    return words;
+}
+
+// Members that are often written one floor too low or too high.
+std::string misplaced(const std::string& pointer, std::string_view name)
+{
+    static constexpr std::array in_scene{
+        "camera", "environment", "materials", "objects", "lights", "transport"};
+    static constexpr std::array beside_scene{"image",
+                                             "quality",
+                                             "limits",
+                                             "files",
+                                             "seed",
+                                             "priority",
+                                             "labels",
+                                             "fail_on",
+                                             "acceleration",
+                                             "provenance"};
+    if (pointer.empty() && std::find(in_scene.begin(), in_scene.end(), name) != in_scene.end())
+        return "; it stands in \"scene\"";
+    if (pointer == "/scene" &&
+        std::find(beside_scene.begin(), beside_scene.end(), name) != beside_scene.end())
+        return "; it stands beside \"scene\", not in it";
+    return {};
+}
+
+} // namespace
+
+ReadFields::ReadFields(const Json& node, std::string pointer, ReadState& state)
+    : node_(node.is_object() ? &node : nullptr), pointer_(std::move(pointer)), state_(state)
+{
+    if (!node_) wrong_type(pointer_, "an object", node);
+}
+
+void ReadFields::finish()
+{
+    if (!node_ || forgiving_) return;
+    for (const auto& [name, value] : node_->items()) {
+        if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+        std::string hint = misplaced(pointer_, name);
+        if (hint.empty()) hint = did_you_mean(name, suggested_);
+        if (hint.empty()) hint = "; there are: " + listed(suggested_);
+        fault(at(name), "unknown_member", "there is no member " + in_quotes(name) + " here" + hint);
+    }
+}
+
+bool ReadFields::number(const char* name, double& value, const Range& range, const char*)
+{
+    const Json* node = find(name);
+    if (!node) return false;
+    const std::optional<double> read = one_number(*node, at(name), range);
+    if (read) value = *read;
+    return read.has_value();
+}
+
+bool ReadFields::number(const char* name, std::optional<double>& value, const Range& range, const char* doc)
+{
+    double read = 0;
+    if (!number(name, read, range, doc)) return false;
+    value = read;
+    return true;
+}
+
+void ReadFields::boolean(const char* name, bool& value, const char*)
+{
+    const Json* node = find(name);
+    if (!node) return;
+    if (node->is_boolean())
+        value = node->get<bool>();
+    else
+        wrong_type(at(name), "true or false", *node);
+}
+
+void ReadFields::only(const char* name, WordTable words, const char*)
+{
+    chosen(name, words, nullptr);
+}
+
+bool ReadFields::point(const char* name, renderer::Vec3d& value, const char*)
+{
+    const auto read = numbers<3>(name, kCoordinate);
+    if (read) value = {(*read)[0], (*read)[1], (*read)[2]};
+    return read.has_value();
+}
+
+bool ReadFields::direction(const char* name, renderer::Vec3d& value, const char*)
+{
+    const auto read = numbers<3>(name, kCoordinate);
+    if (!read) return false;
+    const renderer::Vec3d vector{(*read)[0], (*read)[1], (*read)[2]};
+    if (vector == renderer::Vec3d{}) {
+        fault(at(name), "zero_length", "[0, 0, 0] points nowhere: any other length will do");
+        return false;
+    }
+    value = vector;
+    return true;
+}
+
+void ReadFields::color(const char* name, renderer::Rgb& value, const Range& range, const char*)
+{
+    if (const auto read = numbers<3>(name, range))
+        value = {
+            static_cast<float>((*read)[0]), static_cast<float>((*read)[1]), static_cast<float>((*read)[2])};
+}
+
+void ReadFields::unbuilt(std::initializer_list<const char*> names, const char* remedy)
+{
+    for (const char* name : names) {
+        known_.push_back(name);
+        if (node_ && node_->contains(name))
+            fault(at(name), "unsupported", in_quotes(name) + " is not available in this build; " + remedy);
+    }
+}
+
+void ReadFields::needs(std::initializer_list<const char*> names)
+{
+    for (const char* name : names)
+        if (node_ && !node_->contains(name))
+            fault(at(name), "missing_member", in_quotes(name) + " must be given");
+}
+
+void ReadFields::exclude(const char* a, const char* b, const char* remedy)
+{
+    if (node_ && node_->contains(a) && node_->contains(b))
+        fault(at(b),
+              "exclusive_members",
+              in_quotes(b) + " and " + in_quotes(a) + " exclude each other: " + remedy);
+}
+
+std::string ReadFields::at(std::string_view member) const
+{
+    return pointer_to(pointer_, member);
+}
+
+std::string ReadFields::at(std::string_view member, std::size_t index) const
+{
+    return pointer_to(at(member), index);
+}
+
+void ReadFields::fault(std::string pointer, const char* code, std::string detail)
+{
+    state_.faults.add(std::move(pointer), code, std::move(detail));
+}
+
+void ReadFields::wrong_type(std::string pointer, const char* expected, const Json& got)
+{
+    std::string detail = std::string("expected ") + expected + ", got " + type_words(got);
+    if (got.is_null()) detail += ": for the default leave the member out";
+    fault(std::move(pointer), "wrong_type", std::move(detail));
+}
+
+const Json* ReadFields::find(const char* name)
+{
+    known_.push_back(name);
+    suggested_.emplace_back(name);
+    if (!node_) return nullptr;
+    const auto found = node_->find(name);
+    return found == node_->end() ? nullptr : &*found;
+}
+
+const Json* ReadFields::array_of(const char* name, const char* limit)
+{
+    const Json* node = find(name);
+    if (!node) return nullptr;
+    if (!node->is_array()) {
+        wrong_type(at(name), "an array", *node);
+        return nullptr;
+    }
+    if (limit && node->size() > value_of(limit, state_.context.limits))
+        state_.faults.add(over_limit(at(name), limit, node->size(), state_.context.limits));
+    return node;
+}
+
+const Word* ReadFields::chosen(const char* name, WordTable words, const char* needed)
+{
+    const Json* node = find(name);
+    if (!node) {
+        if (needed && node_)
+            fault(at(name),
+                  "missing_member",
+                  in_quotes(name) + " must be given, " + needed + ": " + listed(names_of(words)));
+        return nullptr;
+    }
+    if (!node->is_string()) {
+        wrong_type(at(name), "a string", *node);
+        return nullptr;
+    }
+    return word_at(at(name), node->get_ref<const std::string&>(), words);
+}
+
+const Word* ReadFields::word_at(std::string pointer, const std::string& text, WordTable words)
+{
+    const std::vector<std::string> available = names_of(words);
+    const Word* word = find_word(words, text);
+    if (word && word->value != kNotBuilt) return word;
+    if (word)
+        fault(std::move(pointer),
+              "unsupported",
+              in_quotes(text) + " is not available in this build; available: " + listed(available));
+    else
+        fault(std::move(pointer),
+              "unknown_value",
+              in_quotes(text) + " is none of " + listed(available) + did_you_mean(text, available));
+    return nullptr;
+}
+
+std::optional<std::uint64_t> ReadFields::whole(const char* name, const WholeRange& range)
+{
+    const Json* node = find(name);
+    if (!node) return std::nullopt;
+    if (!node->is_number()) {
+        wrong_type(at(name), "a whole number", *node);
+        return std::nullopt;
+    }
+    const renderer::Limits& limits = state_.context.limits;
+    const std::uint64_t limit = range.limit ? value_of(range.limit, limits) : range.max;
+    const std::uint64_t max = std::min(range.max, limit);
+    const double as_double = node->get<double>();
+    if (!node->is_number_integer() && as_double != std::trunc(as_double)) {
+        fault(at(name), "not_integer", text_of(as_double) + " is not a whole number");
+        return std::nullopt;
+    }
+    constexpr double kBeyond = 18446744073709551616.0; // 2^64: floats below convert
+    const bool too_small = as_double < 0;
+    const bool too_large = !node->is_number_integer() && as_double >= kBeyond;
+    const std::uint64_t value = too_small || too_large       ? 0
+                                : node->is_number_unsigned() ? node->get<std::uint64_t>()
+                                                             : static_cast<std::uint64_t>(as_double);
+    if (!too_small && !too_large && value >= range.min && value <= max) return value;
+    if (range.limit && !too_small && !too_large && value > limit && max == limit)
+        state_.faults.add(over_limit(at(name), range.limit, value, limits));
+    else
+        fault(at(name),
+              "out_of_range",
+              text_of(*node) + " is not in [" + std::to_string(range.min) + ", " + std::to_string(max) + "]");
+    return std::nullopt;
+}
+
+std::optional<double> ReadFields::one_number(const Json& node, const std::string& pointer, const Range& range)
+{
+    if (node.is_object() && node.contains("image")) {
+        fault(pointer, "unsupported", "textures are not available in this build; available: numbers");
+        return std::nullopt;
+    }
+    if (!node.is_number()) {
+        wrong_type(pointer, "a number", node);
+        return std::nullopt;
+    }
+    const double value = node.get<double>();
+    if (range.contains(value)) return value;
+    fault(pointer, "out_of_range", text_of(value) + " is not in " + words_of(range));
+    return std::nullopt;
+}
+
+bool ReadFields::read_numbers(const char* name, const Range& range, double* values, std::size_t count)
+{
+    const Json* node = find(name);
+    if (!node) return false;
+    const std::string expected = "an array of " + std::to_string(count) + " numbers";
+    if (node->is_object() && node->contains("image")) {
+        fault(at(name), "unsupported", "textures are not available in this build; available: " + expected);
+        return false;
+    }
+    if (!node->is_array()) {
+        wrong_type(at(name), expected.c_str(), *node);
+        return false;
+    }
+    if (node->size() != count) {
+        fault(at(name), "wrong_length", "expected " + expected + ", got " + std::to_string(node->size()));
+        return false;
+    }
+    bool good = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::optional<double> value = one_number((*node)[i], at(name, i), range);
+        values[i] = value.value_or(0);
+        good = good && value.has_value();
+    }
+    return good;
+}
+
+const std::string* ReadFields::text(const char* name, std::size_t longest)
+{
+    const Json* node = find(name);
+    return node ? text_at(*node, at(name), 1, longest) : nullptr;
+}
+
+const std::string*
+ReadFields::text_at(const Json& node, const std::string& pointer, std::size_t shortest, std::size_t longest)
+{
+    if (!node.is_string()) {
+        wrong_type(pointer, "a string", node);
+        return nullptr;
+    }
+    const auto& text = node.get_ref<const std::string&>();
+    if (text.size() >= shortest && text.size() <= longest) return &text;
+    fault(pointer,
+          "wrong_length",
+          text.empty() ? "must not be empty"
+                       : std::to_string(text.size()) + " bytes are more than " + std::to_string(longest));
+    return nullptr;
+}
+
+bool ReadFields::name_fits(const std::string& pointer, const std::string& name)
+{
+    if (!name.empty() && name.size() <= kLongestName) return true;
+    fault(pointer,
+          "bad_name",
+          name.empty() ? "a name must not be empty"
+                       : "a name has at most " + std::to_string(kLongestName) + " bytes");
+    return false;
+}
+
+} // namespace api

@@ -1,0 +1,82 @@
+#include "api/job_view.h"
+#include "api/json/json.h"
+
+namespace api {
+
+namespace {
+
+const char* name_of(renderer::StopReason reason)
+{
+    switch (reason) {
+    case renderer::StopReason::samples:
+        return "samples";
+    case renderer::StopReason::time:
+        return "time";
+    case renderer::StopReason::stopped:
+        return "stopped";
+    }
+    return "stopped";
+}
+
+Json choices(const std::vector<renderer::ModelChoice>& models)
+{
+    Json json = Json::array();
+    for (const renderer::ModelChoice& model : models)
+        json.push_back({{"name", model.name}, {"why", model.why}});
+    return json;
+}
+
+// `met`: whether the request's own goal was reached. Samples are counted; the best picture in a time has no
+// mark to miss.
+Json accuracy_json(const renderer::AccuracyReport& accuracy, const renderer::QualitySettings& requested)
+{
+    Json json{{"requested", Json::object()},
+              {"samples", accuracy.samples},
+              {"estimate", nullptr},
+              {"met", nullptr},
+              {"stop_reason", name_of(accuracy.stop_reason)}};
+    if (requested.samples) {
+        json["requested"]["samples"] = *requested.samples;
+        json["met"] = accuracy.samples >= *requested.samples;
+    }
+    if (requested.time_s) {
+        json["requested"]["time_s"] = *requested.time_s;
+        json["requested"]["max_samples"] = requested.max_samples;
+    }
+    return json;
+}
+
+} // namespace
+
+std::string write_report(const renderer::RenderReport& report,
+                         const std::string& job_id,
+                         const std::string& render_key,
+                         const renderer::QualitySettings& requested)
+{
+    const renderer::NumericsReport& numerics = report.numerics;
+    const renderer::TimingReport& timing = report.timing;
+    const renderer::GeometryReport& geometry = report.geometry;
+    const Json json{
+        {"job_id", job_id},
+        {"render_key", render_key},
+        {"accuracy", accuracy_json(report.accuracy, requested)},
+        {"models", {{"used", choices(report.models.used)}, {"skipped", choices(report.models.skipped)}}},
+        {"numerics",
+         {{"non_finite_samples", numerics.non_finite_samples},
+          {"degenerate_triangles", numerics.degenerate_triangles},
+          {"coordinate_ratio", numerics.coordinate_ratio},
+          {"precision", numerics.precision}}},
+        {"timing",
+         {{"prepare_s", timing.prepare_s},
+          {"render_s", timing.render_s},
+          {"camera_rays", timing.camera_rays},
+          {"shadow_rays", timing.shadow_rays},
+          {"threads", report.threads}}},
+        {"geometry",
+         {{"triangles", geometry.triangles},
+          {"instances", geometry.instances},
+          {"bvh_bytes", geometry.bvh_bytes}}}};
+    return text_of(json, true);
+}
+
+} // namespace api

@@ -1,0 +1,26 @@
+#include "api/words/digest.h"
+
+#include <algorithm>
+
+namespace api {
+
+namespace {
+
+constexpr std::string_view kScheme = "sha256:";
+
+}
+
+bool names_digest(std::string_view text)
+{
+    return text.starts_with(kScheme);
+}
+
+bool is_digest(std::string_view text)
+{
+    return names_digest(text) && text.size() == kScheme.size() + 64 &&
+           std::all_of(text.begin() + kScheme.size(), text.end(), [](char c) {
+               return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+           });
+}
+
+} // namespace api

@@ -1,0 +1,164 @@
+#include "api/words/word_table.h"
+
+#include <cassert>
+
+namespace api {
+
+using renderer::BvhSplit;
+using renderer::Environment;
+using renderer::Light;
+using renderer::Material;
+using renderer::PhongForm;
+using renderer::Shading;
+using renderer::Shape;
+using renderer::Tone;
+using renderer::TransportType;
+
+template <>
+WordTable words_for<Material>()
+{
+    static constexpr std::array words{alternative<Material, renderer::DiffuseMaterial>("diffuse"),
+                                      alternative<Material, renderer::PhongMaterial>("phong"),
+                                      Word{"cook_torrance"},
+                                      Word{"mirror"},
+                                      Word{"glass"},
+                                      Word{"conductor"},
+                                      Word{"emitter"}};
+    return words;
+}
+
+template <>
+WordTable words_for<Shape>()
+{
+    static constexpr std::array words{alternative<Shape, renderer::RectangleShape>("rectangle"),
+                                      alternative<Shape, renderer::DiskShape>("disk"),
+                                      alternative<Shape, renderer::BoxShape>("box"),
+                                      alternative<Shape, renderer::SphereShape>("sphere")};
+    return words;
+}
+
+template <>
+WordTable words_for<Light>()
+{
+    static constexpr std::array words{alternative<Light, renderer::PointLight>("point"),
+                                      alternative<Light, renderer::SpotLight>("spot"),
+                                      alternative<Light, renderer::DirectionalLight>("directional"),
+                                      Word{"sun"},
+                                      Word{"rectangle"},
+                                      Word{"disk"},
+                                      Word{"sphere"}};
+    return words;
+}
+
+template <>
+WordTable words_for<Environment>()
+{
+    static constexpr std::array words{alternative<Environment, renderer::NoEnvironment>("none"),
+                                      alternative<Environment, renderer::ColorEnvironment>("color"),
+                                      Word{"image"},
+                                      Word{"atmosphere"}};
+    return words;
+}
+
+template <>
+WordTable words_for<PhongForm>()
+{
+    static constexpr std::array words{enumerator("classic", PhongForm::classic),
+                                      enumerator("normalized", PhongForm::normalized)};
+    return words;
+}
+
+template <>
+WordTable words_for<Shading>()
+{
+    static constexpr std::array words{enumerator("auto", Shading::automatic),
+                                      enumerator("smooth", Shading::smooth),
+                                      enumerator("flat", Shading::flat)};
+    return words;
+}
+
+template <>
+WordTable words_for<TransportType>()
+{
+    static constexpr std::array words{enumerator("auto", TransportType::automatic),
+                                      enumerator("direct", TransportType::direct),
+                                      Word{"whitted"},
+                                      Word{"path"},
+                                      Word{"ambient_occlusion"},
+                                      Word{"normals"}};
+    return words;
+}
+
+template <>
+WordTable words_for<Tone>()
+{
+    static constexpr std::array words{
+        enumerator("srgb", Tone::srgb), enumerator("linear", Tone::linear), Word{"filmic"}};
+    return words;
+}
+
+template <>
+WordTable words_for<BvhSplit>()
+{
+    static constexpr std::array words{enumerator("sah", BvhSplit::sah),
+                                      enumerator("midpoint", BvhSplit::midpoint)};
+    return words;
+}
+
+WordTable camera_words()
+{
+    static constexpr std::array words{
+        Word{"perspective", 0}, Word{"orthographic"}, Word{"panorama"}, Word{"meter"}};
+    return words;
+}
+
+WordTable bvh_level_words()
+{
+    static constexpr std::array words{Word{"two", 0}, Word{"mesh"}, Word{"none"}};
+    return words;
+}
+
+WordTable fail_on_words()
+{
+    static constexpr std::array words{Word{"non_finite", 0}, Word{"target_missed"}};
+    return words;
+}
+
+WordTable mesh_format_words()
+{
+    static constexpr std::array words{
+        Word{"obj", 0}, Word{"ply", 1}, Word{"stl", 2}, Word{"gltf", 3}, Word{"glb", 4}};
+    return words;
+}
+
+WordTable image_format_words()
+{
+    static constexpr std::array words{
+        Word{"image/png", 0}, Word{"image/jpeg"}, Word{"image/vnd.radiance"}, Word{"image/x-exr"}};
+    return words;
+}
+
+const Word* find_word(WordTable words, std::string_view name)
+{
+    for (const Word& word : words)
+        if (word.name == name) return &word;
+    return nullptr;
+}
+
+std::string_view name_of(WordTable words, int value)
+{
+    for (const Word& word : words)
+        if (word.value == value) return word.name;
+    assert(false && "every alternative has its word");
+    return "unknown";
+}
+
+std::vector<std::string> names_of(WordTable words)
+{
+    std::vector<std::string> names;
+    for (const Word& word : words)
+        if (word.value != kNotBuilt) names.emplace_back(word.name);
+    return names;
+}
+
+} // namespace api
