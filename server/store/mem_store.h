@@ -7,6 +7,6 @@
 
 namespace server {
 
-std::unique_ptr<Store> make_mem_store(StoreClock clock = {});
+std::unique_ptr<Store> make_mem_store();
 
 } // namespace server

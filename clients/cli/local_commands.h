@@ -1,0 +1,41 @@
+// Commands that need no service: render, check, compare.
+//
+// Each prints what it has to say and returns the exit code; UserError for what the user can mend.
+#pragma once
+
+#include "clients/cli/exit_code.h"
+#include "renderer/description/settings.h"
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+namespace clients {
+
+struct RenderOptions {
+    std::string scene;  // file, mesh or "-"
+    std::string output; // .png or .pfm
+    std::string report; // file for the report; empty: none
+    // What stands here goes before what the scene says.
+    std::optional<std::uint32_t> width_px, height_px, samples, threads, tile_px;
+    std::optional<std::uint64_t> seed;
+    std::optional<double> time_s;
+    std::optional<renderer::BvhSplit> split;
+    bool quiet = false;
+};
+ExitCode render_command(const RenderOptions& options, std::stop_token stop);
+
+struct CheckOptions {
+    std::string scene;
+    bool expand = false;
+};
+ExitCode check_command(const CheckOptions& options);
+
+struct CompareOptions {
+    std::string picture, reference;
+    bool json = false;
+};
+ExitCode compare_command(const CompareOptions& options);
+
+} // namespace clients

@@ -1,0 +1,65 @@
+#include "clients/cli/files.h"
+#include "clients/cli/remote_commands.h"
+#include "clients/cli/remote_job.h"
+#include "clients/cli/user_error.h"
+
+#include <cstdio>
+
+namespace clients {
+
+ExitCode submit_command(const ServiceOptions& service, const SubmitOptions& options, std::stop_token stop)
+{
+    HttpClient client(parse_service_url(service.url), service.patience_s, std::move(stop));
+    const api::JobView job = submit_job(client, options, service.quiet);
+    std::printf("%s\n", job.id.c_str());
+    return ExitCode::ok;
+}
+
+ExitCode wait_command(const ServiceOptions& service, const WaitOptions& options, std::stop_token stop)
+{
+    HttpClient client(parse_service_url(service.url), service.patience_s, std::move(stop));
+    return tell_end(wait_for_job(client, options.id, options.timeout_s, service.quiet));
+}
+
+ExitCode fetch_command(const ServiceOptions& service, const FetchOptions& options, std::stop_token stop)
+{
+    check_writable(options.output);
+    HttpClient client(parse_service_url(service.url), service.patience_s, std::move(stop));
+    write_file(options.output, fetch_picture(client, options.id, options.output));
+    return ExitCode::ok;
+}
+
+namespace {
+
+// After an interrupt, with the client's own stop token spent: one short try with a fresh one.
+void cancel_quietly(const ServiceOptions& service, const std::string& id)
+{
+    try {
+        HttpClient client(parse_service_url(service.url), 0, {});
+        client.send({.method = "POST", .path = path_of_job(id) + "/cancel"});
+        std::fprintf(stderr, "heliograph: %s was cancelled\n", id.c_str());
+    } catch (const UserError& error) {
+        std::fprintf(stderr, "heliograph: %s could not be cancelled: %s\n", id.c_str(), error.what());
+    }
+}
+
+} // namespace
+
+ExitCode run_command(const ServiceOptions& service, const RunOptions& options, std::stop_token stop)
+{
+    check_writable(options.output);
+    HttpClient client(parse_service_url(service.url), service.patience_s, stop);
+    api::JobView job = submit_job(client, options.submit, service.quiet);
+    if (!service.quiet) std::fprintf(stderr, "note: job %s\n", job.id.c_str());
+    try {
+        if (!api::is_final(job.state)) job = wait_for_job(client, job.id, options.timeout_s, service.quiet);
+        const ExitCode code = tell_end(job);
+        if (code == ExitCode::ok) write_file(options.output, fetch_picture(client, job.id, options.output));
+        return code;
+    } catch (const UserError&) {
+        if (stop.stop_requested()) cancel_quietly(service, job.id);
+        throw;
+    }
+}
+
+} // namespace clients

@@ -1,0 +1,124 @@
+#include "api/job_view.h"
+#include "api/provenance.h"
+#include "clients/cli/files.h"
+#include "clients/cli/local_commands.h"
+#include "clients/cli/local_job.h"
+#include "clients/cli/progress_bar.h"
+#include "clients/cli/user_error.h"
+#include "renderer/accel/prepared_mesh.h"
+#include "renderer/film/develop.h"
+#include "renderer/render.h"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+namespace clients {
+namespace {
+
+enum class PictureFormat : std::uint8_t { png, pfm };
+
+PictureFormat format_of(const std::string& output)
+{
+    const std::string extension = lower_extension(output);
+    if (extension == ".pfm") return PictureFormat::pfm;
+    if (extension == ".png" || output == "-") return PictureFormat::png;
+    throw UserError(ExitCode::usage, output + ": the name must end in .png or .pfm");
+}
+
+// The request under the command's options, read again as a job: so options meet the same checks as a scene
+// does.
+api::JobRequest with_options(api::JobRequest request, const RenderOptions& options, const JobSource& source)
+{
+    renderer::RenderSettings& settings = request.settings;
+    if (options.width_px) settings.image.width_px = *options.width_px;
+    if (options.height_px) settings.image.height_px = *options.height_px;
+    if (options.samples || options.time_s) {
+        settings.quality.samples = options.samples;
+        settings.quality.time_s = options.time_s;
+    }
+    if (options.seed) settings.seed = *options.seed;
+    if (options.threads) settings.acceleration.threads = *options.threads;
+    if (options.tile_px) settings.acceleration.tile_px = *options.tile_px;
+    if (options.split) settings.acceleration.split = *options.split;
+    return read_request({source.name, api::write_job(request), source.folder});
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+[[noreturn]] void interrupted()
+{
+    throw UserError(ExitCode::interrupted, "interrupted; nothing was written");
+}
+
+std::shared_ptr<const renderer::Scene> prepare_scene(LocalJob& job,
+                                                     const renderer::Plan& plan,
+                                                     renderer::ThreadPool& pool,
+                                                     const std::stop_token& stop)
+{
+    const renderer::RenderSettings& settings = job.request.settings;
+    std::vector<std::shared_ptr<const renderer::PreparedMesh>> prepared;
+    for (renderer::Mesh& mesh : job.meshes) {
+        prepared.push_back(renderer::prepare_mesh(std::move(mesh), settings.acceleration.split, pool, stop));
+        if (!prepared.back()) interrupted();
+    }
+    return renderer::prepare(job.assumed, plan, prepared, settings, pool);
+}
+
+renderer::RenderResult render_job(LocalJob& job, bool quiet, const std::stop_token& stop)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const renderer::Plan plan = plan_of(job);
+    const renderer::RenderSettings& settings = job.request.settings;
+    renderer::ThreadPool pool(settings.acceleration.threads);
+    const auto scene = prepare_scene(job, plan, pool, stop);
+    if (stop.stop_requested()) interrupted();
+    const double prepare_s = seconds_since(start);
+
+    ProgressBar bar(!quiet);
+    auto result = renderer::render(
+        *scene, plan, settings, pool, stop, [&bar](const renderer::RenderProgress& progress) {
+            bar.show(progress.fraction, std::to_string(progress.samples) + " samples");
+        });
+    if (!result) interrupted();
+    result->report.timing.prepare_s = prepare_s;
+    return *std::move(result);
+}
+
+std::vector<std::uint8_t>
+encode_picture(const renderer::RenderResult& result, const api::JobRequest& request, PictureFormat format)
+{
+    const renderer::LinearImage linear = result.film.mean();
+    if (format == PictureFormat::pfm) return renderer::encode_pfm(linear);
+    std::vector<renderer::PngText> texts;
+    for (auto& [keyword, text] :
+         api::provenance_of(request, render_key_of(request), result.report.accuracy.samples))
+        texts.push_back({keyword, text});
+    return renderer::encode_png(renderer::develop(linear, request.settings.image), texts);
+}
+
+} // namespace
+
+ExitCode render_command(const RenderOptions& options, std::stop_token stop)
+{
+    const PictureFormat format = format_of(options.output);
+    check_writable(options.output);
+    if (!options.report.empty()) check_writable(options.report);
+    const JobSource source = read_job_source(options.scene);
+    LocalJob job = load_local_job(source, with_options(read_request(source), options, source));
+    if (!options.quiet)
+        for (const std::string& note : job.notes)
+            std::fprintf(stderr, "note: %s\n", note.c_str());
+
+    const renderer::RenderResult result = render_job(job, options.quiet, stop);
+    const std::vector<std::uint8_t> bytes = encode_picture(result, job.request, format);
+    write_file(options.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (!options.report.empty())
+        write_file(options.report, api::write_report(result.report, "local", render_key_of(job.request)));
+    return ExitCode::ok;
+}
+
+} // namespace clients

@@ -1,0 +1,129 @@
+#include "clients/cli/http_client.h"
+#include "clients/cli/user_error.h"
+
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+namespace {
+
+using clients::HttpAnswer;
+using clients::HttpClient;
+using clients::UserError;
+
+// A service of one answer, on any free port.
+class SmallService {
+public:
+    explicit SmallService(httplib::Server::Handler handler)
+    {
+        server_.Get(".*", handler);
+        server_.Post(".*", handler);
+        port_ = server_.bind_to_any_port("127.0.0.1");
+        thread_ = std::jthread([this] { server_.listen_after_bind(); });
+        while (!server_.is_running())
+            std::this_thread::yield(); // stop() before that would be lost
+    }
+    ~SmallService() { server_.stop(); }
+    clients::ServiceUrl url(const std::string& prefix = "") const
+    {
+        return {"http://127.0.0.1:" + std::to_string(port_), prefix};
+    }
+
+private:
+    httplib::Server server_;
+    int port_ = 0;
+    std::jthread thread_;
+};
+
+TEST(HttpClient, SendsWhatItIsGivenAndReadsTheAnswer)
+{
+    const SmallService service([](const httplib::Request& request, httplib::Response& response) {
+        response.set_header("X-Saw",
+                            request.method + ' ' + request.path + ' ' + request.get_header_value("X-Word"));
+        response.set_content(request.body, "text/plain");
+        response.status = 202;
+    });
+    HttpClient client(service.url("/farm"), 0, {});
+    const HttpAnswer answer =
+        client.send({.method = "POST", .path = "/v1/jobs", .headers = {{"X-Word", "hello"}}, .body = "body"});
+    EXPECT_EQ(answer.status, 202);
+    EXPECT_EQ(answer.body, "body");
+    EXPECT_EQ(answer.header("x-saw"), "POST /farm/v1/jobs hello");
+    EXPECT_EQ(answer.header("absent"), "");
+}
+
+TEST(HttpClient, AsksABusyServiceAgain)
+{
+    std::atomic<int> asked = 0;
+    const SmallService service([&asked](const httplib::Request&, httplib::Response& response) {
+        response.status = ++asked < 3 ? 503 : 200;
+    });
+    HttpClient client(service.url(), 60, {});
+    EXPECT_EQ(client.send({.path = "/"}).status, 200);
+    EXPECT_EQ(asked, 3);
+}
+
+TEST(HttpClient, GivesTheBusyAnswerWhenRetryAfterIsBeyondItsPatience)
+{
+    std::atomic<int> asked = 0;
+    const SmallService service([&asked](const httplib::Request&, httplib::Response& response) {
+        ++asked;
+        response.status = 429;
+        response.set_header("Retry-After", "1000");
+    });
+    HttpClient client(service.url(), 5, {});
+    const HttpAnswer answer = client.send({.path = "/"});
+    EXPECT_EQ(answer.status, 429);
+    EXPECT_EQ(answer.retry_after_s(), 1000.0);
+    EXPECT_EQ(asked, 1) << "waiting would have been in vain";
+}
+
+TEST(HttpClient, DoesNotRepeatOtherAnswers)
+{
+    std::atomic<int> asked = 0;
+    const SmallService service([&asked](const httplib::Request&, httplib::Response& response) {
+        ++asked;
+        response.status = 500;
+    });
+    HttpClient client(service.url(), 60, {});
+    EXPECT_EQ(client.send({.path = "/"}).status, 500);
+    EXPECT_EQ(asked, 1);
+}
+
+TEST(HttpClient, DoesNotWaitForAServiceThatWasNeverThere)
+{
+    clients::ServiceUrl gone;
+    {
+        const SmallService service([](const httplib::Request&, httplib::Response&) {});
+        gone = service.url();
+    }
+    HttpClient client(gone, 3600, {});
+    try {
+        client.send({.path = "/"});
+        FAIL() << "there is no service";
+    } catch (const UserError& error) {
+        EXPECT_EQ(error.code(), clients::ExitCode::unreachable);
+    }
+}
+
+TEST(HttpClient, StopsBetweenTriesAndDuringOne)
+{
+    std::stop_source stop;
+    const SmallService service([&stop](const httplib::Request&, httplib::Response& response) {
+        stop.request_stop();
+        response.status = 503;
+        response.set_header("Retry-After", "1000");
+    });
+    HttpClient client(service.url(), 3600, stop.get_token());
+    try {
+        client.send({.path = "/"});
+        FAIL() << "was interrupted";
+    } catch (const UserError& error) {
+        EXPECT_EQ(error.code(), clients::ExitCode::interrupted);
+    }
+}
+
+} // namespace
