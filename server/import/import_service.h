@@ -1,16 +1,24 @@
-// ImportService: from an uploaded blob to a prepared mesh, once per content. Imports run in heliograph-import, a child
-// process under rlimits, no_new_privs and a deadline, whose output is validated as hostile. Prepared meshes are kept
-// in memory, least recently used first out, by bytes.
+// ImportService: from an uploaded blob to a prepared mesh, once per content. Imports run in
+// heliograph-import, a child process under rlimits, no_new_privs and a deadline, whose output is validated as
+// hostile. Prepared meshes are kept in memory, least recently used first out, by bytes.
 //
-// Key      digest of the main file, digests of every file it opened, importer version.
-// Threads  every function may be called from any thread; the same mesh asked for twice at once is imported once.
-// Errors   the client's doing (a broken mesh) is a value; StoreError and std::system_error are the world's.
+// Key      digest and extension of the main file, digests of every file that it asked for (or that there was
+// none),
+//          importer version, split. Failures that would come again are remembered too; time and memory are
+//          not such.
+// Bytes    every blob is verified against its digest before what came of it is told or kept: the importer
+// reads the
+//          file itself while this process verifies it.
+// Threads  every function may be called from any thread; the same mesh asked for twice at once is imported
+// once. Errors   the client's doing (a broken mesh, one too large for the limits) is a value; StoreError and
+//          std::system_error (no child can be started, or it cannot lock itself down) are the world's.
 #pragma once
 
 #include "api/job_view.h"
 #include "renderer/accel/prepared_mesh.h"
 #include "renderer/description/limits.h"
 #include "renderer/parallel/thread_pool.h"
+#include "server/import/import_failure.h"
 #include "server/store/blob_store.h"
 
 #include <filesystem>
@@ -22,11 +30,6 @@
 #include <vector>
 
 namespace server {
-
-struct ImportFailure {
-    std::string code;   // "truncated", "no_triangles", "import_timeout", "import_crashed", "over_limit", ...
-    std::string detail; // a sentence for the client
-};
 
 struct PreparedAsset {
     std::shared_ptr<const renderer::PreparedMesh> mesh;
@@ -41,7 +44,7 @@ struct ImportRequest {
 };
 
 class ImportService {
-  public:
+public:
     // `program`: path of heliograph-import.
     ImportService(std::filesystem::path program, BlobStore& blobs, const renderer::Limits& limits);
     ~ImportService();
@@ -49,8 +52,8 @@ class ImportService {
     ImportService& operator=(const ImportService&) = delete;
 
     // Cached or imported now. Nothing in the variant's first if `stop` was requested (mesh is null).
-    std::variant<PreparedAsset, ImportFailure> import(const ImportRequest& request, renderer::ThreadPool& pool,
-                                                      std::stop_token stop);
+    std::variant<PreparedAsset, ImportFailure>
+    import(const ImportRequest& request, renderer::ThreadPool& pool, std::stop_token stop);
     // A fault known from an earlier import of this very request; no work is done. For checks at POST.
     std::variant<std::monostate, ImportFailure> known_failure(const ImportRequest& request) const;
     // What GET /v1/assets/{digest}/info tells; imports (without building a BVH) if not yet known.
@@ -59,7 +62,7 @@ class ImportService {
     std::uint64_t cached_bytes() const;
     std::uint64_t imports_run() const; // child processes started so far
 
-  private:
+private:
     struct State;
     std::unique_ptr<State> state_;
 };

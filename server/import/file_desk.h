@@ -1,0 +1,32 @@
+// The file desk: how the importer, which can open nothing, gets the files that a mesh names. It asks by name
+// over a socket; the service answers with an open descriptor, or that there is none. So exactly the files
+// that are needed are opened, and it is the service, not the importer, that knows which.
+//
+// Errors  the importer's side treats a closed desk as "there is none"; the service's side answers what it
+// does not
+//         understand the same way, and closes after kMostQuestions.
+#pragma once
+
+#include "server/import/owned_fd.h"
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace server {
+
+constexpr std::size_t kLongestFileName = 1024;
+constexpr int kMostQuestions = 256;
+
+// A connected pair: .first stays with the service, .second goes to the importer. Throws std::system_error.
+std::pair<OwnedFd, OwnedFd> make_desk();
+
+// The importer's side: an open descriptor, or none.
+OwnedFd ask_for_file(int desk, std::string_view name);
+
+// The service's side: answers one question if there is one; `open` gives the descriptor or none. False once
+// the other side is gone.
+bool answer_question(int desk, const std::function<OwnedFd(std::string_view name)>& open);
+
+} // namespace server

@@ -1,0 +1,45 @@
+// The flat form in which heliograph-import hands a mesh, or a failure, to the service: a head with counts,
+// the arrays as they stand in memory, then the texts. It never leaves the machine, so it has this machine's
+// byte order.
+//
+// Errors  read_flat() takes nothing on trust: sizes, counts, ranges, finiteness and UTF-8 are checked, and
+// bytes that are
+//         not exactly what write_flat() makes give a failure "import_crashed". The bytes must not change
+//         meanwhile.
+// Cost    one copy of the arrays.
+#pragma once
+
+#include "renderer/description/limits.h"
+#include "renderer/geometry/mesh.h"
+#include "server/import/import_failure.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace server {
+
+// Changes whenever the same file may import differently: part of the cache's key and of the flat form's head.
+constexpr std::uint32_t kImporterVersion = 1;
+
+struct ImportedAsset {
+    renderer::Mesh mesh;
+    std::string format; // "obj", "ply", "stl", "gltf", "glb"
+    std::vector<std::string> notes;
+};
+
+using ImportOutcome = std::variant<ImportedAsset, ImportFailure>;
+using ByteSink = std::function<void(std::span<const std::byte>)>;
+
+// The outcome itself, or "over_limit" where its flat form would be refused for its size.
+ImportOutcome within_flat_bounds(ImportOutcome outcome, const renderer::Limits& limits);
+void write_flat(const ImportOutcome& outcome, const ByteSink& sink);
+ImportOutcome read_flat(std::span<const std::byte> bytes, const renderer::Limits& limits);
+
+bool is_utf8(std::string_view text);
+
+} // namespace server

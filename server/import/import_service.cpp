@@ -1,0 +1,265 @@
+#include "server/import/import_service.h"
+
+#include "server/import/import_cache.h"
+#include "server/import/mesh_figures.h"
+#include "server/import/run_import.h"
+#include "server/log/log.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <condition_variable>
+#include <fcntl.h>
+#include <future>
+#include <mutex>
+#include <new>
+#include <set>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace server {
+
+namespace {
+
+constexpr BlobStore::Kind kAsset = BlobStore::Kind::asset;
+
+// The extension as a hint, if it is one that a format goes by.
+std::string extension_of(const std::string& name)
+{
+    std::string extension = std::filesystem::path(name).extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    static constexpr std::array<std::string_view, 5> kKnown{".obj", ".ply", ".stl", ".gltf", ".glb"};
+    return std::find(kKnown.begin(), kKnown.end(), extension) == kKnown.end() ? std::string() : extension;
+}
+
+std::string main_key(const ImportRequest& request)
+{
+    return request.digest + extension_of(request.name);
+}
+
+ImportFailure out_of_memory()
+{
+    return {"import_out_of_memory",
+            "there is not enough memory for this mesh now; try again, or simplify it"};
+}
+
+} // namespace
+
+struct ImportService::State {
+    State(std::filesystem::path program_path, BlobStore& store, const renderer::Limits& bounds)
+        : program(std::move(program_path)), blobs(store), limits(bounds), cache(bounds.mesh_cache_bytes)
+    {
+    }
+
+    // Holds the right to import one main file, and one of the places of a child.
+    class Flight {
+    public:
+        Flight(State& state, std::string main) : state_(state), main_(std::move(main)) {}
+        ~Flight()
+        {
+            const std::lock_guard lock(state_.mutex);
+            state_.in_flight.erase(main_);
+            state_.changed.notify_all();
+        }
+        Flight(const Flight&) = delete;
+        Flight& operator=(const Flight&) = delete;
+
+    private:
+        State& state_;
+        std::string main_;
+    };
+
+    using Imported = std::variant<std::monostate, ImportedAsset, ImportFailure>; // nothing: stopped
+
+    // Until `answer` finds one in the cache (then it is returned, no flight) or this caller may import (then
+    // nothing, and the flight is this caller's). `stopped` is set, and nothing returned, if `stop` was
+    // requested.
+    template <typename Answer>
+    auto
+    wait_for_turn(const ImportRequest& request, const Answer& answer, std::stop_token stop, bool& stopped)
+    {
+        const std::string main = main_key(request);
+        std::unique_lock lock(mutex);
+        while (true) {
+            if (KnownImport* known = cache.find(main, request.files))
+                if (auto found = answer(*known)) return found;
+            stopped = stop.stop_requested();
+            if (stopped || (!in_flight.contains(main) && in_flight.size() < most_children)) break;
+            changed.wait(
+                lock, stop, [&] { return !in_flight.contains(main) && in_flight.size() < most_children; });
+        }
+        if (!stopped) in_flight.insert(main);
+        return decltype(answer(std::declval<KnownImport&>()))();
+    }
+
+    OwnedFd open_asset(const std::string& digest) const
+    {
+        const int fd = ::open(blobs.path(kAsset, digest).c_str(), O_RDONLY | O_CLOEXEC);
+        if (fd < 0 && errno != ENOENT)
+            throw std::system_error(errno, std::generic_category(), "open an asset");
+        return OwnedFd(fd);
+    }
+
+    // A file of the job by the name that the mesh uses; what was answered is part of the cache's key.
+    OwnedFd open_companion(const ImportRequest& request, std::string_view name, NamedDigests& answers)
+    {
+        const auto file = request.files.find(std::string(name));
+        const bool there =
+            file != request.files.end() && blobs.read(kAsset, file->second).has_value(); // verified
+        OwnedFd fd = there ? open_asset(file->second) : OwnedFd();
+        answers[std::string(name)] = fd ? file->second : "";
+        return fd;
+    }
+
+    Imported
+    import(const ImportRequest& request, NamedDigests& answers, bool& repeatable, std::stop_token stop)
+    {
+        repeatable = false;
+        const OwnedFd file = open_asset(request.digest);
+        if (!file)
+            return ImportFailure{"missing_asset",
+                                 request.digest + " is not uploaded: PUT /v1/assets/" + request.digest};
+        // The child starts reading at once; its answer counts only if the bytes are what the digest says.
+        auto verified =
+            std::async(std::launch::async, [&] { return blobs.read(kAsset, request.digest).has_value(); });
+        imports_run.fetch_add(1);
+        ImportRunEnd end =
+            run_import({program,
+                        file.get(),
+                        extension_of(request.name),
+                        [&](std::string_view name) { return open_companion(request, name, answers); },
+                        limits},
+                       std::move(stop));
+        if (!verified.get())
+            return ImportFailure{"missing_asset", request.digest + " was removed while it was imported"};
+        if (!end.outcome) return std::monostate();
+        repeatable = end.repeatable;
+        if (auto* asset = std::get_if<ImportedAsset>(&*end.outcome)) return std::move(*asset);
+        auto& failure = std::get<ImportFailure>(*end.outcome);
+        Log().write(LogLevel::info,
+                    "import_failed",
+                    {{"digest", request.digest},
+                     {"code", failure.code},
+                     {"detail", failure.detail},
+                     {"importer_log", end.log}});
+        return std::move(failure);
+    }
+
+    void remember(KnownImport known)
+    {
+        const std::lock_guard lock(mutex);
+        cache.store(std::move(known));
+    }
+
+    const std::filesystem::path program;
+    BlobStore& blobs;
+    const renderer::Limits limits;
+    const std::size_t most_children = std::max(1u, std::thread::hardware_concurrency());
+    std::atomic<std::uint64_t> imports_run{0};
+    mutable std::mutex mutex;
+    std::condition_variable_any changed;
+    ImportCache cache;               // under mutex
+    std::set<std::string> in_flight; // under mutex: main keys
+};
+
+ImportService::ImportService(std::filesystem::path program, BlobStore& blobs, const renderer::Limits& limits)
+    : state_(std::make_unique<State>(std::move(program), blobs, limits))
+{
+}
+
+ImportService::~ImportService() = default;
+
+std::variant<PreparedAsset, ImportFailure>
+ImportService::import(const ImportRequest& request, renderer::ThreadPool& pool, std::stop_token stop)
+try {
+    using Answer = std::variant<PreparedAsset, ImportFailure>;
+    const auto split = static_cast<std::size_t>(request.split);
+    const auto answer = [&](const KnownImport& known) -> std::optional<Answer> {
+        if (known.failure) return *known.failure;
+        if (known.prepared[split]) return PreparedAsset{known.prepared[split], known.figures->notes};
+        return std::nullopt;
+    };
+    bool stopped = false;
+    if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return std::move(*found);
+    if (stopped) return PreparedAsset{};
+    const State::Flight flight(*state_, main_key(request));
+
+    KnownImport known{main_key(request), {}, {}, {}, {}};
+    bool repeatable = false;
+    State::Imported imported = state_->import(request, known.answers, repeatable, stop);
+    if (auto* failure = std::get_if<ImportFailure>(&imported)) {
+        known.failure = *failure;
+        if (repeatable) state_->remember(std::move(known));
+        return std::move(*failure);
+    }
+    auto* asset = std::get_if<ImportedAsset>(&imported);
+    if (!asset) return PreparedAsset{};
+    known.figures = mesh_figures(*asset);
+    PreparedAsset prepared{prepare_mesh(std::move(asset->mesh), request.split, pool, stop),
+                           known.figures->notes};
+    known.prepared[split] = prepared.mesh;
+    state_->remember(std::move(known));
+    return prepared;
+} catch (const std::bad_alloc&) {
+    return out_of_memory();
+}
+
+std::variant<std::monostate, ImportFailure> ImportService::known_failure(const ImportRequest& request) const
+{
+    const std::lock_guard lock(state_->mutex);
+    const KnownImport* known = state_->cache.peek(main_key(request), request.files);
+    if (known && known->failure) return *known->failure;
+    return std::monostate();
+}
+
+api::AssetInfo ImportService::info(const std::string& digest, std::stop_token stop)
+{
+    api::AssetInfo info;
+    info.digest = digest;
+    info.bytes = state_->blobs.size(kAsset, digest).value_or(0);
+    const auto tell_fault = [&](const ImportFailure& failure) {
+        info.fault = api::Problem{"", failure.code, failure.detail};
+    };
+    const auto answer = [&](const KnownImport& known) -> std::optional<api::AssetInfo> {
+        if (known.failure) tell_fault(*known.failure);
+        info.mesh = known.figures;
+        return info;
+    };
+    try {
+        const ImportRequest request{"", digest, {}, renderer::BvhSplit::sah};
+        bool stopped = false;
+        if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return std::move(*found);
+        if (stopped) return info;
+        const State::Flight flight(*state_, main_key(request));
+
+        KnownImport known{main_key(request), {}, {}, {}, {}};
+        bool repeatable = false;
+        const State::Imported imported = state_->import(request, known.answers, repeatable, stop);
+        if (std::holds_alternative<std::monostate>(imported)) return info;
+        if (const auto* failure = std::get_if<ImportFailure>(&imported))
+            known.failure = *failure;
+        else
+            known.figures = mesh_figures(std::get<ImportedAsset>(imported));
+        static_cast<void>(answer(known));
+        if (repeatable) state_->remember(std::move(known));
+    } catch (const std::bad_alloc&) {
+        tell_fault(out_of_memory());
+    }
+    return info;
+}
+
+std::uint64_t ImportService::cached_bytes() const
+{
+    const std::lock_guard lock(state_->mutex);
+    return state_->cache.bytes();
+}
+
+std::uint64_t ImportService::imports_run() const
+{
+    return state_->imports_run.load();
+}
+
+} // namespace server

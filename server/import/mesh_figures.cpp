@@ -1,0 +1,50 @@
+#include "server/import/mesh_figures.h"
+
+#include <algorithm>
+#include <set>
+
+namespace server {
+
+namespace {
+
+bool is_degenerate(const renderer::Mesh& mesh, const renderer::Triangle& triangle)
+{
+    const renderer::Vec3d a = to_double(mesh.positions[triangle[0]]);
+    const renderer::Vec3d area =
+        cross(to_double(mesh.positions[triangle[1]]) - a, to_double(mesh.positions[triangle[2]]) - a);
+    return area == renderer::Vec3d{};
+}
+
+} // namespace
+
+api::AssetInfo::MeshInfo mesh_figures(const ImportedAsset& asset)
+{
+    const renderer::Mesh& mesh = asset.mesh;
+    api::AssetInfo::MeshInfo figures;
+    figures.format = asset.format;
+    figures.triangles = mesh.triangles.size();
+    figures.vertices = mesh.positions.size();
+    figures.degenerate_triangles = static_cast<std::uint64_t>(
+        std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
+            return is_degenerate(mesh, triangle);
+        }));
+    const renderer::Bounds3f bounds = mesh.bounds();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        figures.lower[axis] = bounds.lower[axis];
+        figures.upper[axis] = bounds.upper[axis];
+    }
+    std::set<std::string> textures;
+    for (const renderer::MeshMaterial& material : mesh.materials) {
+        figures.materials.push_back(material.name);
+        textures.insert(material.textures.begin(), material.textures.end());
+    }
+    figures.textures.assign(textures.begin(), textures.end());
+    for (const renderer::MeshPart& part : mesh.parts)
+        figures.parts.push_back(part.name);
+    figures.notes = asset.notes;
+    figures.has_normals = !mesh.normals.empty();
+    figures.has_uvs = !mesh.uvs.empty();
+    return figures;
+}
+
+} // namespace server
