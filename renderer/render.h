@@ -1,7 +1,7 @@
 // render: the front door. From a prepared scene to a film, deterministically, with what is to be told of it.
 //
-// Same scene, settings and build: the same bytes, whatever the threads, tiles and processor. A render that time
-// stopped after N samples equals the one with `samples: N`.
+// Same scene, settings and build: the same bytes, whatever the threads, tiles and processor. A render that
+// time stopped after N samples equals the one with `samples: N`.
 #pragma once
 
 #include "renderer/description/report.h"
@@ -33,7 +33,11 @@ struct RenderResult {
 using ProgressSink = std::function<void(const RenderProgress&)>;
 
 // Runs passes until the settings are met. Nothing if `stop` was requested.
-std::optional<RenderResult> render(const Scene& scene, const Plan& plan, const RenderSettings& settings,
-                                   ThreadPool& pool, std::stop_token stop = {}, const ProgressSink& progress = {});
+std::optional<RenderResult> render(const Scene& scene,
+                                   const Plan& plan,
+                                   const RenderSettings& settings,
+                                   ThreadPool& pool,
+                                   std::stop_token stop = {},
+                                   const ProgressSink& progress = {});
 
 } // namespace renderer

@@ -195,7 +195,7 @@ std::string place_words(std::string_view text, std::size_t read)
 std::variant<Json, ProblemDetails> parse_json(std::string_view text, const renderer::Limits& limits)
 {
     if (text.size() > limits.json_bytes)
-        return problem_from_faults(413, "too_large", {over_limit("", "json_bytes", text.size(), limits)});
+        return problem_from_faults(413, "over_limit", {over_limit("", "json_bytes", text.size(), limits)});
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
         return problem_from_faults(
             400,

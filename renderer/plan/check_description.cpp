@@ -1,5 +1,6 @@
 #include "renderer/plan/check_description.h"
 
+#include "renderer/plan/placement.h"
 #include "renderer/plan/world_bounds.h"
 
 #include <cmath>
@@ -30,6 +31,22 @@ std::string name_list(const std::vector<MeshPart>& parts)
         list += (i == 0 ? "\"" : ", \"") + parts[i].name + "\"";
     if (parts.size() > kMost) list += ", and " + std::to_string(parts.size() - kMost) + " more";
     return list;
+}
+
+bool is_size(double x)
+{
+    return std::isfinite(x) && x > 0;
+}
+
+bool has_size(const Shape& shape)
+{
+    if (const auto* const r = std::get_if<RectangleShape>(&shape))
+        return is_size(r->width_m) && is_size(r->height_m);
+    if (const auto* const d = std::get_if<DiskShape>(&shape)) return is_size(d->radius_m);
+    if (const auto* const s = std::get_if<SphereShape>(&shape)) return is_size(s->radius_m);
+    if (const auto* const b = std::get_if<BoxShape>(&shape))
+        return is_size(b->size_m.x) && is_size(b->size_m.y) && is_size(b->size_m.z);
+    return true;
 }
 
 class Checker {
@@ -96,7 +113,9 @@ private:
         if (const auto* const mesh = std::get_if<MeshShape>(&object.shape)) check_mesh(*mesh, at);
         if (object.material && *object.material >= scene_.materials.size())
             fault(at + "/material", "unknown_material", "no such material");
-        if (!object.world_from_object.inverse())
+        if (!has_size(object.shape))
+            return fault(at, "out_of_range", "every size of a shape must be finite and above 0");
+        if (!placement(object).inverse())
             return fault(
                 at + "/transform",
                 "singular_transform",

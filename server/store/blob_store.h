@@ -1,9 +1,15 @@
 // BlobStore: assets and pictures by content: a file a digest, verified when written and when read.
 //
-// Durability  put() and Writer::commit() are durable when they return: temporary file, fsync, rename, fsync of the folder.
-// Threads     every function may be called from any thread.
-// Errors      StoreError for the world's failures (storage_full told apart); a damaged blob is reported by name and
-//             never served.
+// On disk     <folder>/assets/ab/<64 hex digits>, <folder>/results/...; a file's time of modification is its
+// last use. Durability  put() and Writer::commit() are durable when they return: temporary file, fsync,
+// rename, fsync of the
+//             folders. Temporary files that a crash left are removed at open.
+// Threads     every function may be called from any thread; a Writer belongs to one thread at a time.
+// Errors      StoreError for the world's failures (storage_full told apart); a damaged blob is reported by
+// name and
+//             never served; from then on it counts as missing, so that uploading it again mends it. What is
+//             not a digest names no blob.
+// Cost        a few hundred bytes of memory a blob; has(), size() and total_bytes() do not touch the disk.
 #pragma once
 
 #include "server/store/store.h"
@@ -22,7 +28,7 @@
 namespace server {
 
 class BlobStore {
-  public:
+public:
     // Two name spaces: "assets" (uploads, least recently used and unreferenced go first) and "results".
     enum class Kind : std::uint8_t { asset, result };
 
@@ -33,7 +39,7 @@ class BlobStore {
 
     // A blob on its way in; forgotten unless committed.
     class Writer {
-      public:
+    public:
         virtual ~Writer() = default;
         virtual void append(std::span<const std::byte> bytes) = 0;
         virtual std::uint64_t bytes() const = 0;
@@ -48,7 +54,8 @@ class BlobStore {
     std::optional<std::uint64_t> size(Kind kind, std::string_view digest) const;
     // The bytes, verified against the digest; nothing if there is no such blob.
     std::optional<std::vector<std::byte>> read(Kind kind, std::string_view digest);
-    // Path for handing to the importer as an open file descriptor; verified by the caller who reads it.
+    // Path for handing to the importer as an open file descriptor; verified by the caller who reads it. Empty
+    // if the digest is none; the file need not exist.
     std::filesystem::path path(Kind kind, std::string_view digest) const;
     bool remove(Kind kind, std::string_view digest);
     void touch(Kind kind, std::string_view digest); // marks it as used now
@@ -56,11 +63,12 @@ class BlobStore {
     std::uint64_t total_bytes(Kind kind) const;
     std::vector<std::string> list(Kind kind) const; // least recently used first
     // Removes least recently used assets that `keep` does not name until `bytes` more fit under `limit`.
-    // False if they do not.
+    // False, and nothing is removed, if they cannot.
     bool make_room(std::uint64_t bytes, std::uint64_t limit, const std::vector<std::string>& keep);
 
-  private:
+private:
     struct State;
+    class FileWriter;
     std::unique_ptr<State> state_;
 };
 

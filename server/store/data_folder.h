@@ -8,7 +8,7 @@
 namespace server {
 
 class DataFolder {
-  public:
+public:
     explicit DataFolder(std::filesystem::path folder);
     ~DataFolder();
     DataFolder(const DataFolder&) = delete;
@@ -16,7 +16,7 @@ class DataFolder {
 
     const std::filesystem::path& path() const { return path_; }
 
-  private:
+private:
     std::filesystem::path path_;
     int lock_fd_ = -1;
 };

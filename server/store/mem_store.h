@@ -7,6 +7,6 @@
 
 namespace server {
 
-std::unique_ptr<Store> make_mem_store();
+std::unique_ptr<Store> make_mem_store(StoreClock clock = {});
 
 } // namespace server

@@ -1,6 +1,6 @@
-// SqliteStore: the embedded store: SQLite in WAL mode, synchronous=FULL, one writer that folds waiting commits into
-// one transaction (group commit, no timer). Leases live in memory: every lease is void at start, so what was running
-// is queued again.
+// SqliteStore: the embedded store: SQLite in WAL mode, synchronous=FULL, one writer that folds waiting
+// commits into one transaction (group commit, no timer). Leases live in memory: every lease is void at start,
+// so what was running is queued again.
 //
 // Errors  StoreError; a damaged database is refused at open, with its path.
 #pragma once

@@ -1,9 +1,20 @@
-// Store: where jobs live. A durable, fenced queue: SqliteStore for a node, MemStore for tests; one conformance suite.
+// Store: where jobs live. A durable, fenced queue: SqliteStore for a node, MemStore for tests; one
+// conformance suite.
 //
-// Durability  submit() and cancel() are durable when they return. complete() may return before it is: a lost result
-//             renders again to the same bytes.
-// Fencing     claim() raises a job's epoch; complete(), fail(), release() and renew() with an older epoch do nothing
-//             and say so.
+// Durability  submit(), cancel(), remove() and sweep() outlast a power cut when they return. What workers do
+// (claim,
+//             complete, release, fail, confirm_cancel) outlasts the death of the process, and a power cut a
+//             little later: a lost result renders again to the same bytes. Everyone reads what was written.
+// Fencing     claim() raises a job's epoch; complete(), fail(), release() and renew() with an older epoch do
+// nothing
+//             and say so. A lease that ran out is still its owner's until another claim takes the job.
+// Attempts    claim() counts one, release() takes it back, a restart or a lease that ran out does not. fail()
+// with
+//             `retry` gives up after kMaxAttempts. A job that kills its worker never gets there: who claims a
+//             job with more than kMaxAttempts attempts must fail it without starting (the job service does).
+// Cancel      once cancel_requested, a job ends as canceled by whatever comes first: confirm_cancel(),
+// release(), a
+//             restart, a lease that ran out, fail() with `retry`, even complete(), whose result is not kept.
 // Threads     every function may be called from any thread.
 // Errors      the world's failures (disk full, corrupt file) throw StoreError; everything else is a value.
 #pragma once
@@ -20,6 +31,9 @@
 #include <vector>
 
 namespace server {
+
+// A job that was tried this often is not tried again.
+inline constexpr std::uint32_t kMaxAttempts = 5;
 
 struct StoreError : std::runtime_error {
     bool storage_full = false;
@@ -44,8 +58,9 @@ struct JobSpec {
 struct JobResult {
     std::string image_digest; // blob, "sha256:..."
     std::string report_json;
-    std::string scene_json;   // the scene as executed
+    std::string scene_json;    // the scene as executed
     std::uint32_t samples = 0; // in every pixel
+    bool reusable = true;      // false: stopped by time, so another job with this render_key renders anew
     friend bool operator==(const JobResult&, const JobResult&) = default;
 };
 
@@ -59,9 +74,10 @@ struct JobRecord {
     bool cancel_requested = false;
     bool reused = false; // born succeeded from another job's result
     std::int64_t created_ms = 0;
-    std::optional<std::int64_t> started_ms, finished_ms;
+    std::optional<std::int64_t> started_ms; // of the present or last attempt; none while queued
+    std::optional<std::int64_t> finished_ms;
     std::optional<JobResult> result;
-    std::string error_json;   // api::write_problem of the failure
+    std::string error_json; // api::write_problem of the failure
 };
 
 // A run of work units of one pass of a job. One node renders whole jobs: pass 0, first 0, count 0 means all.
@@ -71,15 +87,16 @@ struct Lease {
     std::uint64_t epoch = 0;
 };
 
-// `idempotency_key` empty: none. `body_digest`: of the request as sent, to tell a replay from a reuse of the key.
+// `idempotency_key` empty: none. `body_digest`: of the request as sent, to tell a replay from a reuse of the
+// key.
 struct SubmitRequest {
     JobId id; // from make_job_id(), so that the caller knows it first; empty: the store makes one
     Tenant tenant;
     std::string idempotency_key;
     std::string body_digest;
     JobSpec spec;
-    bool allow_reuse = true;        // of a succeeded job with the same render_key
-    std::uint64_t queue_limit = 0;  // refuse when this many wait already; 0: no limit
+    bool allow_reuse = true;       // of a succeeded job with the same render_key
+    std::uint64_t queue_limit = 0; // refuse when this many wait already; 0: no limit
     std::int64_t now_ms = 0;
 };
 
@@ -100,15 +117,25 @@ struct ListQuery {
 
 struct ListPage {
     std::vector<JobRecord> jobs; // newest first
-    std::string next_cursor;     // empty: no more
+    std::string next_cursor;     // empty: no more; it stays good while jobs come and go
+    bool bad_cursor = false;     // the query's cursor is none of ours
 };
 
 struct QueueDepth {
     std::uint64_t queued = 0, leased = 0;
 };
 
+// Leases run by a clock that never jumps; the wall clock only stamps started_ms and ages idempotency keys.
+struct StoreClock {
+    std::function<std::chrono::steady_clock::time_point()> steady = std::chrono::steady_clock::now;
+    std::function<std::int64_t()> wall_ms = [] {
+        const auto now = std::chrono::system_clock::now().time_since_epoch();
+        return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+    };
+};
+
 class Store {
-  public:
+public:
     virtual ~Store() = default;
 
     virtual Submitted submit(const SubmitRequest& request) = 0;
@@ -119,26 +146,33 @@ class Store {
     virtual std::optional<std::uint32_t> queue_position(const JobId& id) = 0;
 
     // Highest priority first, then oldest. At most `max`; empty when nothing waits.
-    virtual std::vector<Lease> claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) = 0;
-    virtual std::size_t renew(const std::vector<Lease>& leases, std::chrono::milliseconds ttl) = 0; // still owned
-    virtual bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms) = 0;    // false: fenced
-    // A queued job takes the result of another with the same render_key: succeeded and `reused`, without being
-    // claimed. False if it is not queued.
+    virtual std::vector<Lease>
+    claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) = 0;
+    virtual std::size_t renew(const std::vector<Lease>& leases,
+                              std::chrono::milliseconds ttl) = 0; // still owned
+    // False: fenced, or canceled meanwhile; the result is not kept.
+    virtual bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms) = 0;
+    // A queued job takes the result of another with the same render_key: succeeded and `reused`, without
+    // being claimed. False if it is not queued.
     virtual bool complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms) = 0;
-    // The result that a succeeded job with this render_key has, the newest such job's; what submit() would reuse.
+    // The result that a succeeded job with this render_key has, the newest such job's; what submit() would
+    // reuse.
     virtual std::optional<JobResult> find_result(const Tenant& tenant, const std::string& render_key) = 0;
-    virtual void release(const std::vector<Lease>& leases) = 0; // drain: claimable at once, attempt not counted
+    virtual void
+    release(const std::vector<Lease>& leases) = 0; // drain: claimable at once, attempt not counted
     // retry: back to the queue unless it was tried 5 times; else failed. False: fenced.
     virtual bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) = 0;
     // The worker's answer to cancel_requested: the job is canceled. False: fenced.
     virtual bool confirm_cancel(const Lease& lease, std::int64_t now_ms) = 0;
 
-    // Queued: canceled at once. Leased: cancel_requested. Final: nothing changes. Nothing if there is no such job.
+    // Queued: canceled at once. Leased: cancel_requested. Final: nothing changes. Nothing if there is no such
+    // job.
     virtual std::optional<JobRecord> cancel(const Tenant& tenant, const JobId& id, std::int64_t now_ms) = 0;
     // Forgets a final job; false if there is none or it is not final.
     virtual bool remove(const Tenant& tenant, const JobId& id) = 0;
 
-    // Final jobs older than `before_ms` become expired (result dropped), and long expired ones are forgotten.
+    // Jobs that were final before `before_ms` become expired (result dropped), those that were so a week
+    // before it are forgotten, and idempotency keys older than 24 h. The number of jobs expired or forgotten.
     virtual std::size_t sweep(std::int64_t before_ms) = 0;
     // Digests that a job not final, or a kept result, still needs.
     virtual std::vector<std::string> referenced_digests() = 0;

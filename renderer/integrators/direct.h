@@ -1,0 +1,41 @@
+// Direct light: what a camera ray sees: the environment, or a surface lit by lights and environment without
+// detour.
+//
+// Units   radiance, linear Rec. 709, W/(m^2 sr).
+// Cost    one camera ray, one shadow ray a light that reaches the surface's front, one for the environment;
+//         no allocation, no lock, no virtual call.
+// Source  the light transport equation cut after one scattering: J. Kajiya, "The Rendering Equation", 1986.
+#pragma once
+
+#include "renderer/color/rgb.h"
+#include "renderer/geometry/ray.h"
+#include "renderer/sampling/sampler.h"
+#include "renderer/scene/scene.h"
+
+#include <cstdint>
+
+namespace renderer {
+
+// Dimensions of a camera sample: each is one number or one pair of PixelSampler.
+enum class Dimension : std::uint32_t { pixel, lobe, direction };
+
+struct RayTally {
+    std::uint64_t camera_rays = 0;
+    std::uint64_t shadow_rays = 0;
+    std::uint64_t non_finite_samples = 0; // dropped: they add nothing to their pixel
+    RayTally& operator+=(const RayTally& o)
+    {
+        camera_rays += o.camera_rays;
+        shadow_rays += o.shadow_rays;
+        non_finite_samples += o.non_finite_samples;
+        return *this;
+    }
+};
+
+Rgb direct_radiance(const Scene& scene,
+                    const Ray& camera_ray,
+                    const PixelSampler& sampler,
+                    std::uint32_t sample,
+                    RayTally& tally);
+
+} // namespace renderer

@@ -1,0 +1,198 @@
+#include "renderer/geometry/shapes.h"
+#include "renderer/plan/placement.h"
+#include "renderer/scene/scene.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace renderer {
+
+namespace {
+
+using SharedMesh = std::shared_ptr<const PreparedMesh>;
+
+// A mesh's own material. What files call diffuse and specular often adds up to more than 1: both are dimmed
+// alike, so that no surface gives more light than it gets.
+Material from_mesh(const MeshMaterial& m)
+{
+    if (is_black(m.specular) || !(m.shininess > 0)) return DiffuseMaterial{m.diffuse};
+    const Rgb sum = m.diffuse + m.specular;
+    const float scale = 1 / std::max({1.0f, sum.r, sum.g, sum.b});
+    PhongMaterial phong;
+    phong.diffuse = m.diffuse * scale;
+    phong.specular = m.specular * scale;
+    phong.shininess = static_cast<double>(m.shininess);
+    return phong;
+}
+
+class Preparation {
+public:
+    Preparation(const SceneDescription& scene,
+                const Plan& plan,
+                std::span<const SharedMesh> meshes,
+                BvhSplit split,
+                ThreadPool& pool)
+        : scene_(scene), keep_normals_(plan.keep_normals), meshes_(meshes), split_(split), pool_(pool)
+    {
+        for (const NamedMaterial& material : scene.materials)
+            bsdfs.push_back(make_bsdf(material.material));
+        default_bsdf_ = next_bsdf();
+        bsdfs.push_back(make_bsdf(DiffuseMaterial{}));
+        for (const ObjectDescription& object : scene.objects)
+            add(object);
+    }
+
+    std::vector<Bsdf> bsdfs;
+    std::vector<Instance> instances;
+    std::vector<Scene::Parts::Look> looks;
+    std::vector<SharedMesh> held;
+    GeometryReport geometry;
+    NumericsReport numerics;
+
+private:
+    std::uint32_t next_bsdf() const { return static_cast<std::uint32_t>(bsdfs.size()); }
+
+    void hold(const SharedMesh& mesh)
+    {
+        if (!seen_.insert(mesh.get()).second) return;
+        held.push_back(mesh);
+        // Parts share the arrays of their whole, which count once.
+        if (counted_.insert(&mesh_of(*mesh)).second) geometry.triangles += mesh_of(*mesh).triangles.size();
+        geometry.bvh_bytes += bvh_bytes(*mesh);
+        numerics.degenerate_triangles += degenerate_triangles(*mesh);
+    }
+
+    void add(const ObjectDescription& object)
+    {
+        const auto [shape, own] = geometry_of(object.shape);
+        const auto instance = Instance::place(shape, placement(object), object.visible_to_camera);
+        if (!instance)
+            throw std::invalid_argument("prepare: an object's transform is singular; make_plan refuses it");
+        instances.push_back(*instance);
+        Scene::Parts::Look look;
+        const bool smooth = keep_normals_ && object.shading != Shading::flat;
+        if (smooth && own != nullptr && !own->normals.empty()) look.normals_of = own;
+        if (object.material) {
+            look.first_bsdf = *object.material;
+        } else if (own != nullptr && !own->materials.empty()) {
+            look.first_bsdf = own_materials(*own);
+            look.materials_of = own;
+        } else {
+            look.first_bsdf = default_bsdf_;
+        }
+        looks.push_back(look);
+        ++geometry.instances;
+    }
+
+    // The shape for rays, and the user's mesh behind it (not our own box or rectangle, which are flat).
+    std::pair<InstanceGeometry, const Mesh*> geometry_of(const Shape& shape)
+    {
+        if (const auto* const sphere = std::get_if<SphereShape>(&shape))
+            return {Sphere{sphere->radius_m}, nullptr};
+        if (const auto* const disk = std::get_if<DiskShape>(&shape)) return {Disk{disk->radius_m}, nullptr};
+        if (std::holds_alternative<BoxShape>(shape)) return {unit_shape(box_, unit_box), nullptr};
+        if (std::holds_alternative<RectangleShape>(shape))
+            return {unit_shape(rectangle_, unit_rectangle), nullptr};
+        const auto& mesh = std::get<MeshShape>(shape);
+        const SharedMesh& prepared = mesh.part.empty() ? meshes_[mesh.mesh] : part(mesh);
+        hold(prepared);
+        return {rays_of(*prepared), &mesh_of(*prepared)};
+    }
+
+    static MeshGeometry rays_of(const PreparedMesh& mesh) { return {&mesh_of(mesh), &bvh_of(mesh)}; }
+
+    MeshGeometry unit_shape(SharedMesh& shared, Mesh (*make)())
+    {
+        if (!shared) shared = prepare_mesh(make(), split_, pool_);
+        hold(shared);
+        return rays_of(*shared);
+    }
+
+    const SharedMesh& part(const MeshShape& shape)
+    {
+        SharedMesh& shared = parts_[{shape.mesh, shape.part}];
+        if (shared) return shared;
+        const Mesh& whole = mesh_of(*meshes_[shape.mesh]);
+        const auto found = std::find_if(
+            whole.parts.begin(), whole.parts.end(), [&](const MeshPart& p) { return p.name == shape.part; });
+        if (found == whole.parts.end())
+            throw std::invalid_argument("prepare: a mesh has no such part; make_plan refuses it");
+        return shared = prepare_part(meshes_[shape.mesh], *found, split_, pool_);
+    }
+
+    std::uint32_t own_materials(const Mesh& mesh)
+    {
+        const auto [entry, is_new] = first_own_.try_emplace(&mesh, next_bsdf());
+        if (is_new)
+            for (const MeshMaterial& material : mesh.materials)
+                bsdfs.push_back(make_bsdf(from_mesh(material)));
+        return entry->second;
+    }
+
+    const SceneDescription& scene_;
+    bool keep_normals_;
+    std::span<const SharedMesh> meshes_;
+    BvhSplit split_;
+    ThreadPool& pool_;
+    SharedMesh box_, rectangle_;
+    std::set<const PreparedMesh*> seen_;
+    std::set<const Mesh*> counted_;
+    std::map<std::pair<std::uint32_t, std::string>, SharedMesh> parts_;
+    std::map<const Mesh*, std::uint32_t> first_own_;
+    std::uint32_t default_bsdf_ = 0;
+};
+
+// Largest coordinate over the scene's diagonal: how many digits the place of the scene costs.
+double coordinate_ratio(const Bounds3d& bounds)
+{
+    if (bounds.empty()) return 0;
+    const double diagonal = length(bounds.extent());
+    const double largest = std::max(max_component(abs(bounds.lower)), max_component(abs(bounds.upper)));
+    return diagonal > 0 ? largest / diagonal : 0;
+}
+
+Rgb environment_of(const SceneDescription& scene)
+{
+    const auto* const color =
+        scene.environment ? std::get_if<ColorEnvironment>(&*scene.environment) : nullptr;
+    return color != nullptr ? color->radiance : Rgb{};
+}
+
+} // namespace
+
+std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
+                                     const Plan& plan,
+                                     std::span<const std::shared_ptr<const PreparedMesh>> meshes,
+                                     const RenderSettings& settings,
+                                     ThreadPool& pool)
+{
+    const SceneDescription& description = scene.description;
+    const BvhSplit split = settings.acceleration.split;
+    Preparation made(description, plan, meshes, split, pool);
+    std::vector<PreparedLight> lights;
+    for (const Light& light : description.lights)
+        lights.push_back(prepare_light(light));
+
+    InstanceTree tree(std::move(made.instances), split, pool);
+    made.geometry.bvh_bytes += tree.size_bytes();
+    made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds());
+    made.numerics.precision = "double";
+    return std::make_shared<const Scene>(
+        Scene::Parts{Camera(description.camera.value(), settings.image.width_px, settings.image.height_px),
+                     std::move(tree),
+                     std::move(lights),
+                     environment_of(description),
+                     std::move(made.bsdfs),
+                     std::move(made.held),
+                     made.geometry,
+                     made.numerics,
+                     std::move(made.looks)});
+}
+
+} // namespace renderer

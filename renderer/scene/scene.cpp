@@ -1,0 +1,46 @@
+#include "renderer/scene/scene.h"
+
+namespace renderer {
+
+namespace {
+
+// Interpolated normals shorter than this have cancelled one another: what is left is noise.
+constexpr double kShortestNormal = 1e-4;
+
+Vec3d corner_normal(const Mesh& mesh, const Triangle& triangle, std::size_t corner)
+{
+    return to_double(mesh.normals[triangle[corner]]);
+}
+
+} // namespace
+
+// The zero vector where the mesh's normals say nothing.
+Vec3d Scene::shading_normal(const SceneHit& hit, const Mesh& mesh) const
+{
+    const Triangle& triangle = mesh.triangles[hit.primitive];
+    const Vec3d normal = corner_normal(mesh, triangle, 0) * hit.barycentrics.x +
+                         corner_normal(mesh, triangle, 1) * hit.barycentrics.y +
+                         corner_normal(mesh, triangle, 2) * hit.barycentrics.z;
+    if (!(length(normal) > kShortestNormal)) return {};
+    const Vec3d world = parts_.tree.instances()[hit.instance].object_from_world().transposed_vector(normal);
+    return is_finite(world) && max_component(abs(world)) > 0 ? normalize(world) : Vec3d{};
+}
+
+Surface Scene::surface_at(const SceneHit& hit, Vec3d toward_viewer) const
+{
+    const Parts::Look& look = parts_.looks[hit.instance];
+    const Vec3d outward = hit.point.normal;
+    const Vec3d geometric = dot(outward, toward_viewer) < 0 ? -outward : outward;
+    Vec3d shading = look.normals_of != nullptr ? shading_normal(hit, *look.normals_of) : Vec3d{};
+    const double agreement = dot(shading, geometric);
+    if (agreement == 0)
+        shading = geometric; // none, or at right angles: it cannot be told which side it means
+    else if (agreement < 0)
+        shading = -shading;
+    std::uint32_t bsdf = look.first_bsdf;
+    if (look.materials_of != nullptr && !look.materials_of->triangle_materials.empty())
+        bsdf += look.materials_of->triangle_materials[hit.primitive];
+    return {hit.point, to_float(geometric), Frame(to_float(shading)), &parts_.bsdfs[bsdf]};
+}
+
+} // namespace renderer

@@ -1,0 +1,134 @@
+#include "server/store/blob_folder.h"
+
+#include "server/store/blob_store.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace server {
+
+namespace {
+
+constexpr std::string_view kTemporaryPrefix = "incoming-";
+constexpr std::string_view kDigestPrefix = "sha256:";
+
+struct FoundBlob {
+    std::string digest;
+    std::uint64_t bytes = 0;
+    std::int64_t used_s = 0, used_ns = 0;
+};
+
+// Regular files that are named by a digest, in one of the 256 folders.
+void find_blobs(const std::filesystem::path& folder, std::vector<FoundBlob>& found)
+{
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        const std::string digest = std::string(kDigestPrefix) + name;
+        struct stat status {};
+        if (!is_digest(digest) || name.substr(0, 2) != folder.filename().string()) continue;
+        if (::lstat(entry.path().c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
+        found.push_back({digest,
+                         static_cast<std::uint64_t>(status.st_size),
+                         status.st_mtim.tv_sec,
+                         status.st_mtim.tv_nsec});
+    }
+}
+
+} // namespace
+
+BlobFolder::BlobFolder(std::filesystem::path folder) : folder_(std::move(folder))
+{
+    make_folder(folder_);
+}
+
+BlobIndex BlobFolder::scan() const
+try {
+    std::vector<FoundBlob> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+        const std::string name = entry.path().filename().string();
+        if (name.substr(0, kTemporaryPrefix.size()) == kTemporaryPrefix)
+            std::filesystem::remove(entry.path());
+        else if (entry.is_directory())
+            find_blobs(entry.path(), found);
+    }
+    std::sort(found.begin(), found.end(), [](const FoundBlob& a, const FoundBlob& b) {
+        return std::pair(a.used_s, a.used_ns) < std::pair(b.used_s, b.used_ns);
+    });
+    BlobIndex index;
+    for (const FoundBlob& blob : found)
+        index.add(blob.digest, {.bytes = blob.bytes});
+    return index;
+} catch (const std::filesystem::filesystem_error& error) {
+    throw_io_error("read the folder", error.path1(), error.code().value());
+}
+
+std::filesystem::path BlobFolder::path(std::string_view digest) const
+{
+    const std::string_view hex = digest.substr(kDigestPrefix.size());
+    return folder_ / hex.substr(0, 2) / hex;
+}
+
+std::pair<FileDescriptor, std::filesystem::path> BlobFolder::make_temporary() const
+{
+    std::string name = (folder_ / kTemporaryPrefix).string() + "XXXXXX";
+    FileDescriptor file(::mkostemp(name.data(), O_CLOEXEC));
+    if (!file) throw_io_error("make a file in", folder_, errno);
+    return {std::move(file), std::filesystem::path(name)};
+}
+
+void BlobFolder::adopt(const std::filesystem::path& temporary, std::string_view digest) const
+{
+    const std::filesystem::path target = path(digest);
+    make_folder(target.parent_path());
+    if (::rename(temporary.c_str(), target.c_str()) != 0) throw_io_error("rename a file to", target, errno);
+}
+
+void BlobFolder::sync(std::string_view digest) const
+{
+    const std::filesystem::path file = path(digest);
+    const FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+    if (!fd) throw_io_error("open", file, errno);
+    sync_file(fd, file);
+    sync_folder(file.parent_path());
+}
+
+std::optional<std::vector<std::byte>> BlobFolder::read(std::string_view digest) const
+{
+    const std::filesystem::path file = path(digest);
+    const FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+    if (!fd && errno == ENOENT) return std::nullopt;
+    if (!fd) throw_io_error("open", file, errno);
+    struct stat status {};
+    if (::fstat(fd.get(), &status) != 0) throw_io_error("stat", file, errno);
+    std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
+    std::size_t filled = 0;
+    while (filled < bytes.size()) {
+        const ssize_t count = ::read(fd.get(), bytes.data() + filled, bytes.size() - filled);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) throw_io_error("read", file, errno);
+        if (count == 0) break; // shorter than it said: the digest will tell
+        filled += static_cast<std::size_t>(count);
+    }
+    bytes.resize(filled);
+    return bytes;
+}
+
+// Only the order of eviction hangs on it, so a file system that refuses is no error.
+void BlobFolder::mark_used(std::string_view digest) const
+{
+    ::utimensat(AT_FDCWD, path(digest).c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
+}
+
+bool BlobFolder::remove(std::string_view digest) const
+{
+    const std::filesystem::path file = path(digest);
+    if (::unlink(file.c_str()) == 0) return true;
+    if (errno != ENOENT) throw_io_error("remove", file, errno);
+    return false;
+}
+
+} // namespace server

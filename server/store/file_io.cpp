@@ -1,0 +1,80 @@
+#include "server/store/file_io.h"
+
+#include "server/store/store.h"
+
+#include <cerrno>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+namespace server {
+
+FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept
+{
+    if (this != &other) {
+        reset();
+        fd_ = other.release();
+    }
+    return *this;
+}
+
+int FileDescriptor::release()
+{
+    return std::exchange(fd_, -1);
+}
+
+void FileDescriptor::reset()
+{
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+}
+
+void throw_io_error(const std::string& action, const std::filesystem::path& path, int error)
+{
+    const bool full = error == ENOSPC || error == EDQUOT;
+    throw StoreError("cannot " + action + ' ' + path.string() + ": " + std::generic_category().message(error),
+                     full);
+}
+
+void write_all(const FileDescriptor& file,
+               std::span<const std::byte> bytes,
+               const std::filesystem::path& path)
+{
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) throw_io_error("write", path, errno);
+        bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+}
+
+void sync_file(const FileDescriptor& file, const std::filesystem::path& path)
+{
+    if (::fsync(file.get()) != 0) throw_io_error("sync", path, errno);
+}
+
+void sync_folder(const std::filesystem::path& folder)
+{
+    const FileDescriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!fd) throw_io_error("open", folder, errno);
+    sync_file(fd, folder);
+}
+
+bool make_folder(const std::filesystem::path& folder)
+{
+    if (::mkdir(folder.c_str(), 0750) == 0) {
+        sync_folder(folder.has_parent_path() ? folder.parent_path() : ".");
+        return true;
+    }
+    if (errno == ENOENT && folder.has_parent_path() && folder.parent_path() != folder) {
+        make_folder(folder.parent_path());
+        return make_folder(folder);
+    }
+    const int error = errno;
+    if (error == EEXIST && std::filesystem::is_directory(folder)) return false;
+    throw_io_error("make the folder", folder, error == EEXIST ? ENOTDIR : error);
+}
+
+} // namespace server

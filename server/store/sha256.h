@@ -1,0 +1,28 @@
+// Sha256: a digest in the making, over bytes as they come.
+//
+// Errors  std::runtime_error if the crypto library refuses (out of memory).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace server {
+
+class Sha256 {
+public:
+    Sha256();
+    ~Sha256();
+    Sha256(const Sha256&) = delete;
+    Sha256& operator=(const Sha256&) = delete;
+
+    void append(std::span<const std::byte> bytes);
+    std::string finish(); // "sha256:" and 64 lower-case hex digits; call once
+
+private:
+    struct Context;
+    std::unique_ptr<Context> context_;
+};
+
+} // namespace server
