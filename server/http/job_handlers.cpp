@@ -210,8 +210,8 @@ void JobHandlers::reply_image(Exchange& exchange, const std::string& id)
     const auto& picture = std::get<JobImage>(found);
     httplib::Response& response = exchange.response;
     response.set_header("Cache-Control", "private, immutable");
-    response.set_header("Content-Disposition", "inline; filename=\"" + id + ".png\"");
-    response.set_header("Link", "<" + path_of(id) + "/report>; rel=\"describedby\"");
+    response.set_header("Content-Disposition", std::string("inline; filename=\"") + id + ".png\"");
+    response.set_header("Link", std::string("<") + path_of(id) + "/report>; rel=\"describedby\"");
     const std::string timing = view ? server_timing(*view) : std::string();
     if (!timing.empty()) response.set_header("Server-Timing", timing);
     reply_payload(exchange, {picture.png, picture.png->size(), picture.digest, "image/png"});

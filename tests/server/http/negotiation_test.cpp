@@ -1,0 +1,112 @@
+#include "server/http/byte_range.h"
+#include "server/http/exchange.h"
+#include "server/http/negotiation.h"
+#include "server/http/spelling.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+
+namespace {
+
+using server::ByteRange;
+
+TEST(Prefer, WaitIsReadAmongOtherPreferences)
+{
+    EXPECT_EQ(server::preferred_wait_s("wait=30"), 30u);
+    EXPECT_EQ(server::preferred_wait_s("respond-async, Wait = 5 ; x=y"), 5u);
+    EXPECT_EQ(server::preferred_wait_s("wait=0"), 0u);
+    EXPECT_EQ(server::preferred_wait_s("wait=99999999999999999999999"), UINT64_MAX);
+}
+
+TEST(Prefer, MalformedWishesAreLeftUnheard)
+{
+    for (const char* text :
+         {"", "wait", "wait=", "wait=abc", "wait=-1", "wait=1.5", "wait=3s", "wait=1=2", ",,;;,=", "waits=3"})
+        EXPECT_EQ(server::preferred_wait_s(text), std::nullopt) << text;
+}
+
+TEST(Accept, TellsWhetherOnlyPicturesWillDo)
+{
+    const auto read = [](const char* text) { return server::read_accept(text); };
+    EXPECT_FALSE(read("").only_images);
+    EXPECT_TRUE(read("").png);
+    EXPECT_FALSE(read("*/*").only_images);
+    EXPECT_TRUE(read("image/png").only_images && read("image/png").png);
+    EXPECT_TRUE(read("IMAGE/*;q=0.5").only_images && read("IMAGE/*;q=0.5").png);
+    EXPECT_TRUE(read("image/jpeg, image/webp").only_images);
+    EXPECT_FALSE(read("image/jpeg, image/webp").png);
+    EXPECT_FALSE(read("image/*, image/png;q=0").png);
+    EXPECT_FALSE(read("image/png, application/json").only_images);
+    EXPECT_TRUE(read("image/png, application/json;q=0").only_images);
+    EXPECT_FALSE(read("application/json").png);
+    EXPECT_TRUE(read("image/avif,image/webp,*/*;q=0.8").png);
+}
+
+TEST(CacheControl, NoCacheAsksForAFreshRender)
+{
+    EXPECT_TRUE(server::wants_fresh("max-age=0, No-Cache"));
+    EXPECT_FALSE(server::wants_fresh("max-age=0"));
+    EXPECT_FALSE(server::wants_fresh(""));
+}
+
+TEST(ByteRange, IsReadAsTheStandardSays)
+{
+    const auto part = [](const char* header, std::uint64_t first, std::uint64_t count) {
+        const ByteRange range = server::read_byte_range(header, 100);
+        EXPECT_EQ(range.kind, ByteRange::Kind::part) << header;
+        EXPECT_EQ(range.first, first) << header;
+        EXPECT_EQ(range.count, count) << header;
+    };
+    part("bytes=0-9", 0, 10);
+    part("bytes=90-", 90, 10);
+    part("bytes=90-1000", 90, 10);
+    part("bytes=-7", 93, 7);
+    part("bytes=-1000", 0, 100);
+    part("bytes=99-99", 99, 1);
+    for (const char* header : {"bytes=100-", "bytes=100-200", "bytes=-0", "bytes=18446744073709551615-"})
+        EXPECT_EQ(server::read_byte_range(header, 100).kind, ByteRange::Kind::beyond) << header;
+}
+
+TEST(ByteRange, OfManyOrMalformedIsTheWhole)
+{
+    for (const char* header : {"",
+                               "bytes=",
+                               "bytes=-",
+                               "bytes=5",
+                               "bytes=a-b",
+                               "bytes=9-5",
+                               "items=0-5",
+                               "bytes=0-1,2-3",
+                               "bytes=0-99999999999999999999",
+                               "bytes=--5"})
+        EXPECT_EQ(server::read_byte_range(header, 100).kind, ByteRange::Kind::whole) << header;
+}
+
+TEST(ETag, IsFoundInListsWeakOrNot)
+{
+    EXPECT_TRUE(server::names_etag("\"abc\"", "abc"));
+    EXPECT_TRUE(server::names_etag("\"x\", W/\"abc\"", "abc"));
+    EXPECT_TRUE(server::names_etag("*", "abc"));
+    EXPECT_FALSE(server::names_etag("", "abc"));
+    EXPECT_FALSE(server::names_etag("abc", "abc"));
+    EXPECT_FALSE(server::names_etag("\"abcd\"", "abc"));
+}
+
+TEST(ReprDigest, IsTheDigestInBase64)
+{
+    // printf '' | openssl dgst -sha256 -binary | base64
+    EXPECT_EQ(server::repr_digest("sha256:e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"),
+              "sha-256=:47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=:");
+}
+
+TEST(Spelling, FindsTheNearestWordAndNoFarOne)
+{
+    EXPECT_EQ(server::nearest("stat", {"state", "label", "limit"}), "state");
+    EXPECT_EQ(server::nearest("lable", {"state", "label", "limit"}), "label");
+    EXPECT_EQ(server::nearest("zzzzzz", {"state", "label", "limit"}), "");
+    EXPECT_EQ(server::printable("a\x1b[2J\xff"), "a?[2J?");
+}
+
+} // namespace
