@@ -19,7 +19,8 @@ api::ProblemDetails no_such_asset(const std::string& digest)
     if (!is_digest(digest))
         return problem(404,
                        "not_found",
-                       std::string("\"") + printable(digest) + "\" is no digest: sha256: and 64 hex digits in lower case");
+                       std::string("\"") + printable(digest) +
+                           "\" is no digest: sha256: and 64 hex digits in lower case");
     return problem(404, "not_found", digest + " is not here: PUT /v1/assets/" + digest + " uploads it");
 }
 

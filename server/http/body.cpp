@@ -17,9 +17,16 @@ over_limit(const std::string& what, std::uint64_t renderer::Limits::*limit, cons
     std::string flag = "--limit-" + name;
     std::replace(flag.begin(), flag.end(), '_', '-');
     return problem(413,
-                   "over_limit",
+                   "too_large",
                    what + " is over the limit " + name + ", " + std::to_string(limits.*limit) + unit +
                        "; the service's flag " + flag + " raises it");
+}
+
+std::optional<api::ProblemDetails> refuse_without_length(const Exchange& exchange, const std::string& what)
+{
+    if (exchange.has_header("Transfer-Encoding") || exchange.has_header("Content-Length"))
+        return std::nullopt;
+    return problem(411, "length_required", what + " needs a Content-Length, or Transfer-Encoding: chunked");
 }
 
 std::optional<api::ProblemDetails> refuse_by_head(const Exchange& exchange,
@@ -27,8 +34,7 @@ std::optional<api::ProblemDetails> refuse_by_head(const Exchange& exchange,
                                                   std::uint64_t renderer::Limits::*limit,
                                                   const renderer::Limits& limits)
 {
-    if (exchange.has_header("Transfer-Encoding")) return std::nullopt;
-    // The guard gives every request without one a Content-Length of 0.
+    if (auto refusal = refuse_without_length(exchange, what)) return refusal;
     const std::string text = exchange.header("Content-Length");
     std::uint64_t length = 0;
     std::from_chars(text.data(), text.data() + text.size(), length);
@@ -49,7 +55,7 @@ std::optional<api::ProblemDetails> read_body(const Exchange& exchange,
     if (complete || stopped) return std::nullopt;
     return problem(
         400,
-        "incomplete_body",
+        "bad_request",
         "the body ended early, came too slowly, or is not in the chunks that Transfer-Encoding promises");
 }
 

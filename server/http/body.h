@@ -17,7 +17,9 @@ namespace server {
 api::ProblemDetails
 over_limit(const std::string& what, std::uint64_t renderer::Limits::*limit, const renderer::Limits& limits);
 
-// What the head says already: 411 without length and chunks, 413 when the length is over `limit_bytes`.
+// 411 where the head tells neither length nor chunks.
+std::optional<api::ProblemDetails> refuse_without_length(const Exchange& exchange, const std::string& what);
+// The same, and 413 when the length is over the limit.
 std::optional<api::ProblemDetails> refuse_by_head(const Exchange& exchange,
                                                   const std::string& what,
                                                   std::uint64_t renderer::Limits::*limit,

@@ -127,9 +127,9 @@ void Router::dispatch(Exchange& exchange) const
                    ? problem(503,
                              "storage_full",
                              "the disk of the service is full; what is stored can still be read")
-                   : problem(500, "internal_error", kPublic));
+                   : problem(500, "internal", kPublic));
     } catch (const std::exception& error) {
-        failed(error.what(), problem(500, "internal_error", kPublic));
+        failed(error.what(), problem(500, "internal", kPublic));
     }
 }
 

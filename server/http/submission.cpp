@@ -137,14 +137,13 @@ Read read_multipart(Exchange& exchange, FormTaker&& taker)
 {
     const std::string boundary = multipart_boundary(exchange.header(kBodyType));
     if (boundary.empty())
-        return problem(400, "malformed_form", "Content-Type: multipart/form-data needs its boundary");
+        return problem(400, "bad_request", "Content-Type: multipart/form-data needs its boundary");
     MultipartReader reader(boundary, taker);
     auto failure = read_body(exchange, [&](std::string_view bytes) { return reader.feed(bytes); });
     if (failure) return *std::move(failure);
     if (taker.refusal()) return *std::move(taker.refusal());
-    if (!reader.fault().empty()) return problem(400, "malformed_form", reader.fault());
-    if (!reader.finished())
-        return problem(400, "malformed_form", "the form ends before its closing boundary");
+    if (!reader.fault().empty()) return problem(400, "bad_request", reader.fault());
+    if (!reader.finished()) return problem(400, "bad_request", "the form ends before its closing boundary");
     if (!taker.scene())
         return problem(
             422,
@@ -187,7 +186,7 @@ std::optional<api::ProblemDetails> add_headers(const Exchange& exchange, SubmitW
                           return c > ' ' && c <= '~';
                       });
     if (good) return std::nullopt;
-    return problem(400, "invalid_header", "Idempotency-Key is 1 to 255 visible ASCII characters");
+    return problem(400, "bad_request", "Idempotency-Key is 1 to 255 visible ASCII characters");
 }
 
 } // namespace
@@ -202,9 +201,11 @@ Read read_submission(Exchange& exchange, Store& store, BlobStore& blobs, const r
                        "unsupported_media_type",
                        "the body's type " + printable(exchange.header(kBodyType)) +
                            " is not taken: " + kCurlHint);
-    if (kind != BodyKind::multipart)
-        if (auto refusal = refuse_by_head(exchange, "the JSON body", &renderer::Limits::json_bytes, limits))
-            return *std::move(refusal);
+    // Of a form only the files are counted, as they come.
+    if (auto refusal = kind == BodyKind::multipart
+                           ? refuse_without_length(exchange, "the form")
+                           : refuse_by_head(exchange, "the JSON body", &renderer::Limits::json_bytes, limits))
+        return *std::move(refusal);
     Read read = kind == BodyKind::multipart ? read_multipart(exchange, FormTaker(store, blobs, limits))
                                             : read_json(exchange, kind, limits);
     if (auto* words = std::get_if<SubmitWords>(&read)) {

@@ -63,7 +63,7 @@ void explain(const httplib::Request& request, httplib::Response& response)
     if (!response.body.empty()) return;
     const bool ours = response.status >= 500, nowhere = response.status == 404;
     response.set_content(problem_text(response.status,
-                                      ours ? "internal_error" : (nowhere ? "not_found" : "malformed_request"),
+                                      ours ? "internal" : (nowhere ? "not_found" : "bad_request"),
                                       ours      ? "the service failed; tell its keeper the request id"
                                       : nowhere ? "there is nothing here: GET / tells what is"
                                                 : "the request could not be read as HTTP",

@@ -39,7 +39,7 @@ std::string_view trimmed(std::string_view text)
 
 HeadFault malformed(std::string detail)
 {
-    return {400, "malformed_request", std::move(detail)};
+    return {400, "bad_request", std::move(detail)};
 }
 
 // http://host/path, as a proxy would send it, becomes /path.
@@ -199,8 +199,8 @@ std::string RequestHead::rewritten() const
     std::string block = method + " " + target + " HTTP/1.1\r\nHost: guard\r\n";
     if (chunked)
         block += "Transfer-Encoding: chunked\r\n";
-    else
-        block += "Content-Length: " + std::to_string(content_length.value_or(0)) + "\r\n";
+    else if (content_length)
+        block += "Content-Length: " + std::to_string(*content_length) + "\r\n";
     if (close) block += "Connection: close\r\n";
     return block + "\r\n";
 }

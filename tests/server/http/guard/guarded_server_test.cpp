@@ -1,0 +1,368 @@
+#include "server/http/guard/guarded_server.h"
+#include "tests/support/raw_http.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace {
+
+using server::GuardedServer;
+using server::GuardOptions;
+using std::chrono::milliseconds;
+using test_support::fetch;
+using test_support::RawConnection;
+
+constexpr std::size_t kBig = 256 << 20;
+
+// A server whose handlers do what a test needs, and which says when a waiting one has begun and ended.
+class Guarded : public testing::Test {
+protected:
+    void start(const GuardOptions& options)
+    {
+        server_ = std::make_unique<GuardedServer>(
+            options,
+            log_,
+            [this](const httplib::Request& request,
+                   httplib::Response& response,
+                   const httplib::ContentReader* content) { handle(request, response, content); });
+        server_->start("127.0.0.1", 0);
+        port = server_->port();
+    }
+    void SetUp() override { start({}); }
+    void TearDown() override
+    {
+        if (server_) server_->stop();
+    }
+
+    void handle(const httplib::Request& request,
+                httplib::Response& response,
+                const httplib::ContentReader* content)
+    {
+        if (request.path == "/throw") throw std::runtime_error("secret path /etc/passwd");
+        response.status = 200;
+        if (request.path == "/read") {
+            std::string body;
+            const bool complete = (*content)([&](const char* data, std::size_t size) {
+                body.append(data, size);
+                return true;
+            });
+            response.status = complete ? 200 : 400;
+            response.set_content(complete ? body : "incomplete", "text/plain");
+        } else if (request.path == "/headers") {
+            std::string text = request.remote_addr + "\n";
+            for (const auto& [name, value] : request.headers)
+                text += name + "=" + value + "\n";
+            response.set_content(text, "text/plain");
+        } else if (request.path == "/big") {
+            const auto block = std::make_shared<std::string>(1 << 20, 'x');
+            response.set_content_provider(kBig,
+                                          "application/octet-stream",
+                                          [block](std::size_t, std::size_t length, httplib::DataSink& sink) {
+                                              return sink.write(block->data(),
+                                                                std::min(length, block->size()));
+                                          });
+        } else if (request.path == "/wait") {
+            began.set_value();
+            while (request.progress(0, 0))
+                std::this_thread::yield();
+            ended.set_value();
+        } else {
+            response.set_content("ok", "text/plain");
+        }
+    }
+
+    void expect_alive() { EXPECT_EQ(fetch(port, "GET", "/").body, "ok"); }
+
+    server::Log log_{server::LogLevel::error};
+    std::unique_ptr<GuardedServer> server_;
+    int port = 0;
+    std::promise<void> began, ended;
+};
+
+TEST_F(Guarded, ServesManyRequestsOnOneConnectionAlsoSentAhead)
+{
+    RawConnection connection(port);
+    std::string ahead;
+    for (int i = 0; i < 20; ++i)
+        ahead += "POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\n\r\n" + std::to_string(10 + i);
+    ASSERT_TRUE(connection.send(ahead));
+    for (int i = 0; i < 20; ++i) {
+        const auto answer = connection.read();
+        ASSERT_TRUE(answer);
+        EXPECT_EQ(answer->body, std::to_string(10 + i));
+    }
+}
+
+TEST_F(Guarded, GivesHandlersTheHeadersAsTheyWereSentAndNoForgedOnes)
+{
+    const auto answer = fetch(port,
+                              "POST",
+                              "/headers",
+                              {{"REMOTE_ADDR", "6.6.6.6"},
+                               {"X-Odd", "a%2Bb%0d%0aX: y"},
+                               {"Content-Type", "multipart/form-data"},
+                               {"Body-Type", "forged"},
+                               {"Range", "bytes=0-1,0-1"},
+                               {"Accept-Encoding", "gzip"}});
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_EQ(answer.body.rfind("127.0.0.1\n", 0), 0u);
+    EXPECT_EQ(answer.body.find("6.6.6.6"), std::string::npos);
+    EXPECT_NE(answer.body.find("X-Odd=a%2Bb%0d%0aX: y\n"), std::string::npos);
+    EXPECT_NE(answer.body.find("Body-Type=multipart/form-data\n"), std::string::npos);
+    EXPECT_EQ(answer.body.find("forged"), std::string::npos);
+    EXPECT_FALSE(answer.has("content-encoding"));
+}
+
+TEST_F(Guarded, PutsChunkedBodiesTogetherAndKeepsTheConnection)
+{
+    RawConnection connection(port);
+    ASSERT_TRUE(connection.send("POST /read HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: "
+                                "chunked\r\n\r\n5\r\nhello\r\n1;x=y\r\n!\r\n0\r\nT: x\r\n\r\n"));
+    auto answer = connection.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->body, "hello!");
+    ASSERT_TRUE(connection.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    answer = connection.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->body, "ok");
+}
+
+TEST_F(Guarded, RefusesChunksThatAreNone)
+{
+    for (const char* size : {"-2", "FFFFFFFFFFFFFFFE", "FFFFFFFFFFFFFFFFF", "zz"}) {
+        RawConnection connection(port);
+        connection.send(std::string("POST /read HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n") +
+                        size + "\r\nabc");
+        const auto answer = connection.read();
+        ASSERT_TRUE(answer) << size;
+        EXPECT_EQ(answer->status, 400);
+        EXPECT_EQ(answer->header("connection"), "close");
+        EXPECT_TRUE(connection.wait_closed());
+    }
+    expect_alive();
+}
+
+TEST_F(Guarded, SaysContinueOnlyWhenAHandlerReads)
+{
+    RawConnection reads(port);
+    ASSERT_TRUE(
+        reads.send("POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\nExpect: 100-continue\r\n\r\n"));
+    auto answer = reads.read_head();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 100);
+    ASSERT_TRUE(reads.send("hi"));
+    answer = reads.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->body, "hi");
+
+    RawConnection refuses(port);
+    ASSERT_TRUE(
+        refuses.send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\nExpect: 100-continue\r\n\r\n"));
+    answer = refuses.read_head();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 200);
+    EXPECT_EQ(answer->header("connection"), "close");
+}
+
+TEST_F(Guarded, ClosesAfterAnAnswerThatCameBeforeTheBody)
+{
+    RawConnection connection(port);
+    ASSERT_TRUE(connection.send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\nGET /smuggled "
+                                "HTTP/1.1\r\nHost: a\r\n\r\n"));
+    const auto answer = connection.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->header("connection"), "close");
+    EXPECT_FALSE(connection.read());
+}
+
+TEST_F(Guarded, RefusesHeadersBeyondItsBoundsAndGoesOn)
+{
+    RawConnection line(port);
+    line.send("GET / HTTP/1.1\r\nHost: a\r\nX: " + std::string(300 << 10, 'a'));
+    auto answer = line.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 431);
+    EXPECT_EQ(answer->header("content-type"), "application/problem+json");
+    EXPECT_NE(answer->header("x-request-id"), "");
+
+    std::string many = "GET / HTTP/1.1\r\nHost: a\r\n";
+    for (int i = 0; i < 200; ++i)
+        many += "X: a\r\n";
+    RawConnection lines(port);
+    lines.send(many + "\r\n");
+    answer = lines.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 431);
+    expect_alive();
+}
+
+TEST_F(Guarded, AnswersGarbageWithAProblemAndUnknownMethodsWith405)
+{
+    RawConnection garbage(port);
+    garbage.send("\x16\x03\x01\x02 tls, perhaps\r\n\r\n");
+    auto answer = garbage.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 400);
+    EXPECT_NE(answer->body.find("\"code\":\"bad_request\""), std::string::npos) << answer->body;
+    const auto brew = fetch(port, "BREW", "/");
+    EXPECT_EQ(brew.status, 405);
+    EXPECT_NE(brew.header("allow").find("GET"), std::string::npos);
+    expect_alive();
+}
+
+TEST_F(Guarded, TellsNobodyWhatAnExceptionSaid)
+{
+    const auto answer = fetch(port, "GET", "/throw", {{"X-Request-Id", "mine-1"}});
+    EXPECT_EQ(answer.status, 500);
+    EXPECT_EQ(answer.body.find("secret"), std::string::npos);
+    for (const auto& [name, value] : answer.headers)
+        EXPECT_EQ(value.find("secret"), std::string::npos) << name;
+    EXPECT_EQ(answer.header("x-request-id"), "mine-1");
+    EXPECT_EQ(answer.header("content-type"), "application/problem+json");
+    EXPECT_EQ(answer.header("x-content-type-options"), "nosniff");
+}
+
+TEST_F(Guarded, CutsOffWhoSendsAHeaderTooSlowly)
+{
+    GuardOptions options;
+    options.threads = 1;
+    options.stream.head = milliseconds(100);
+    TearDown();
+    start(options);
+    RawConnection slow(port);
+    ASSERT_TRUE(slow.send("GET / HTTP/1.1\r\nHost: a\r\nX: "));
+    const auto answer = slow.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 408);
+    expect_alive();
+}
+
+TEST_F(Guarded, CutsOffWhoFallsSilentWithinABody)
+{
+    GuardOptions options;
+    options.threads = 1;
+    options.stream.idle_body = milliseconds(100);
+    TearDown();
+    start(options);
+    RawConnection slow(port);
+    ASSERT_TRUE(slow.send("POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 10\r\n\r\nabc"));
+    const auto answer = slow.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 400);
+    EXPECT_TRUE(slow.wait_closed());
+    expect_alive();
+}
+
+TEST_F(Guarded, CutsOffWhoDoesNotReadTheAnswer)
+{
+    GuardOptions options;
+    options.threads = 1;
+    options.stream.idle_write = milliseconds(100);
+    TearDown();
+    start(options);
+    RawConnection slow(port, 4096);
+    ASSERT_TRUE(slow.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
+    expect_alive(); // the one thread is free again
+}
+
+TEST_F(Guarded, CutsOffWhoReadsTheAnswerBelowTheRate)
+{
+    GuardOptions options;
+    options.stream.grace = milliseconds(0);
+    options.stream.min_rate = std::uint64_t{1} << 60; // nobody is that fast
+    TearDown();
+    start(options);
+    RawConnection slow(port, 4096);
+    ASSERT_TRUE(slow.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
+    EXPECT_THROW(slow.read(), std::runtime_error); // the body ends early
+    expect_alive();
+}
+
+TEST_F(Guarded, RefusesConnectionsBeyondThreadsAndQueue)
+{
+    GuardOptions options;
+    options.threads = 1;
+    options.queue = 1;
+    TearDown();
+    start(options);
+    RawConnection holds(port);
+    ASSERT_TRUE(holds.send("GET /wait HTTP/1.1\r\nHost: a\r\n\r\n"));
+    began.get_future().wait();
+    RawConnection waits(port);
+    RawConnection refused(port);
+    const auto answer = refused.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 503);
+    EXPECT_EQ(answer->header("retry-after"), "1");
+    holds.hang_up();
+    ASSERT_TRUE(waits.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    const auto served = waits.read();
+    ASSERT_TRUE(served);
+    EXPECT_EQ(served->body, "ok");
+}
+
+TEST_F(Guarded, EndsTheWaitOfAClientThatHangsUp)
+{
+    RawConnection connection(port);
+    ASSERT_TRUE(connection.send("GET /wait HTTP/1.1\r\nHost: a\r\n\r\n"));
+    began.get_future().wait();
+    connection.hang_up();
+    EXPECT_EQ(ended.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+}
+
+TEST_F(Guarded, StopEndsWaitsAndAnswersThem)
+{
+    RawConnection connection(port);
+    ASSERT_TRUE(connection.send("GET /wait HTTP/1.1\r\nHost: a\r\n\r\n"));
+    began.get_future().wait();
+    server_->stop();
+    const auto answer = connection.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 200);
+    EXPECT_THROW(RawConnection{port}, std::runtime_error);
+}
+
+TEST_F(Guarded, RefusesAPortThatIsTaken)
+{
+    GuardedServer second(
+        {}, log_, [](const httplib::Request&, httplib::Response&, const httplib::ContentReader*) {});
+    try {
+        second.start("127.0.0.1", port);
+        FAIL() << "two servers on one port";
+    } catch (const std::system_error& error) {
+        EXPECT_NE(std::string(error.what()).find("127.0.0.1 port " + std::to_string(port)), std::string::npos)
+            << error.what();
+    }
+}
+
+TEST_F(Guarded, ServesManyConnectionsAtOnce)
+{
+    GuardOptions options;
+    options.threads = 8;
+    options.queue = 200;
+    TearDown();
+    start(options);
+    std::vector<std::unique_ptr<RawConnection>> connections;
+    for (int i = 0; i < 100; ++i)
+        connections.push_back(std::make_unique<RawConnection>(port));
+    for (auto& connection : connections)
+        ASSERT_TRUE(connection->send("GET / HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"));
+    for (auto& connection : connections) {
+        const auto answer = connection->read();
+        ASSERT_TRUE(answer);
+        EXPECT_EQ(answer->body, "ok");
+    }
+}
+
+} // namespace
