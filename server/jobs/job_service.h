@@ -49,7 +49,7 @@ struct JobServiceOptions {
 };
 
 class JobService {
-  public:
+public:
     JobService(Store& store, BlobStore& blobs, ImportService& imports, const JobServiceOptions& options);
     ~JobService(); // stop() if it was not called
     JobService(const JobService&) = delete;
@@ -64,20 +64,22 @@ class JobService {
     std::variant<SubmitAnswer, api::ProblemDetails> submit(const SubmitWords& words);
     std::optional<api::JobView> get(const JobId& id);
     // Waits until the job is final or, with `known_etag`, until its view changes; at most `timeout`.
-    std::optional<api::JobView> wait(const JobId& id, std::chrono::milliseconds timeout, const std::string& known_etag = {});
+    std::optional<api::JobView>
+    wait(const JobId& id, std::chrono::milliseconds timeout, const std::string& known_etag = {});
     std::variant<std::string, api::ProblemDetails> list(const ListQuery& query); // JSON text
-    std::optional<api::JobView> cancel(const JobId& id); // idempotent
-    bool remove(const JobId& id);                        // cancels if active, then forgets; false: not there
+    std::optional<api::JobView> cancel(const JobId& id);                         // idempotent
+    bool remove(const JobId& id); // cancels if active, then forgets; false: not there
 
     // The picture, or why not: 404, 504 still_running, 409 render_failed, 410 expired.
     std::variant<JobImage, api::ProblemDetails> image(const JobId& id);
     std::variant<std::string, api::ProblemDetails> report(const JobId& id); // JSON text
-    std::variant<std::string, api::ProblemDetails> scene(const JobId& id);  // as executed, or as accepted until then
+    std::variant<std::string, api::ProblemDetails>
+    scene(const JobId& id); // as executed, or as accepted until then
 
     // Seconds until a new job would likely start, from the work queued: Retry-After of a 429.
     int estimated_wait_s() const;
 
-  private:
+private:
     struct State;
     std::unique_ptr<State> state_;
 };

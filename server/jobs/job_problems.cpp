@@ -1,0 +1,169 @@
+#include "server/jobs/job_problems.h"
+
+#include "api/words/limit_words.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <variant>
+
+namespace server {
+
+namespace {
+
+api::ProblemDetails problem(int status, const char* code, std::string detail, bool retryable)
+{
+    return {.status = status,
+            .code = code,
+            .detail = std::move(detail),
+            .retryable = retryable,
+            .request_id = {},
+            .errors = {}};
+}
+
+} // namespace
+
+api::ProblemDetails draining_problem()
+{
+    return problem(503, "draining", "the service is shutting down; send the job again when it is back", true);
+}
+
+api::ProblemDetails storage_full_problem()
+{
+    return problem(503,
+                   "storage_full",
+                   "the service's disk is full, so the job was not accepted; try again later",
+                   true);
+}
+
+api::ProblemDetails queue_full_problem(std::uint64_t limit)
+{
+    return problem(429,
+                   "queue_full",
+                   std::to_string(limit) +
+                       " jobs wait already, which is the limit queue_jobs; try again later, or " +
+                       api::raise_words("queue_jobs"),
+                   true);
+}
+
+api::ProblemDetails key_reused_problem()
+{
+    return problem(422,
+                   "idempotency_key_reuse",
+                   "this Idempotency-Key was sent before with another body; use a new key for a new job",
+                   false);
+}
+
+api::ProblemDetails not_found_problem(const JobId& id)
+{
+    return problem(404, "not_found", "there is no job " + id, false);
+}
+
+api::ProblemDetails still_running_problem(const JobId& id)
+{
+    return problem(504,
+                   "still_running",
+                   "job " + id + " is not finished; ask again, or wait with Prefer: wait=60",
+                   true);
+}
+
+api::ProblemDetails render_failed_problem(const JobId& id, const api::ProblemDetails* why)
+{
+    if (why == nullptr)
+        return problem(409, "render_failed", "job " + id + " was canceled: it has no picture", false);
+    api::ProblemDetails failed =
+        problem(409, "render_failed", "job " + id + " failed: " + why->detail, false);
+    failed.errors = why->errors;
+    return failed;
+}
+
+api::ProblemDetails expired_problem(const JobId& id)
+{
+    return problem(410,
+                   "expired",
+                   "the result of job " + id +
+                       " is no longer kept; submit it again, its scene is still at /v1/jobs/" + id + "/scene",
+                   false);
+}
+
+api::ProblemDetails damaged_problem(const JobId& id)
+{
+    return problem(500,
+                   "result_damaged",
+                   "the stored picture of job " + id +
+                       " is damaged and is not served; submit the same job again: it "
+                       "renders to the same bytes",
+                   true);
+}
+
+api::ProblemDetails time_limit_problem(double limit_s)
+{
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%g", limit_s);
+    return problem(
+        422,
+        "time_limit",
+        std::string("the job took longer than its limits.time_s, ") + seconds +
+            " s; raise it, ask for fewer samples, or use quality.time_s for the best picture in that time",
+        false);
+}
+
+api::ProblemDetails non_finite_problem(std::uint64_t samples)
+{
+    return problem(422,
+                   "non_finite",
+                   std::to_string(samples) + " samples were not finite, and fail_on names non_finite",
+                   false);
+}
+
+api::ProblemDetails too_many_attempts_problem(const JobId& id, std::uint32_t attempts)
+{
+    return problem(
+        500,
+        "too_many_attempts",
+        "the service stopped " + std::to_string(attempts - 1) +
+            " times while it worked on this job, so it is not tried again; its log tells more under " + id,
+        false);
+}
+
+api::ProblemDetails out_of_memory_problem(const JobId& id)
+{
+    return problem(500,
+                   "out_of_memory",
+                   "the service ran out of memory on job " + id + "; a smaller picture or mesh may fit",
+                   true);
+}
+
+api::ProblemDetails internal_problem(const JobId& id)
+{
+    return problem(500,
+                   "internal",
+                   "the service failed while it worked on the job; its log tells more under " + id,
+                   true);
+}
+
+api::ProblemDetails faults_problem(const std::vector<renderer::Fault>& faults)
+{
+    const bool over_limit = std::all_of(faults.begin(), faults.end(), [](const renderer::Fault& fault) {
+        return fault.code == "over_limit";
+    });
+    std::vector<api::Problem> errors;
+    errors.reserve(faults.size());
+    for (const renderer::Fault& fault : faults)
+        errors.push_back({fault.pointer, fault.code, fault.detail});
+    return api::problem_from_faults(422, over_limit ? "over_limit" : "invalid_scene", std::move(errors));
+}
+
+std::vector<renderer::Fault>
+faults_of(const ImportFailure& failure, const renderer::SceneDescription& scene, std::uint32_t mesh)
+{
+    std::vector<renderer::Fault> faults;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const auto* shape = std::get_if<renderer::MeshShape>(&scene.objects[i].shape);
+        if (shape != nullptr && shape->mesh == mesh)
+            faults.push_back({"/scene/objects/" + std::to_string(i) + "/mesh", failure.code, failure.detail});
+    }
+    if (faults.empty()) faults.push_back({"/files", failure.code, failure.detail}); // named, but by no object
+    return faults;
+}
+
+} // namespace server

@@ -1,0 +1,39 @@
+// Every way the job service says no, as the answer that the client gets.
+#pragma once
+
+#include "api/problem.h"
+#include "renderer/description/fault.h"
+#include "renderer/description/scene_description.h"
+#include "server/import/import_service.h"
+#include "server/store/store.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace server {
+
+api::ProblemDetails draining_problem();
+api::ProblemDetails storage_full_problem();
+api::ProblemDetails queue_full_problem(std::uint64_t limit);
+api::ProblemDetails key_reused_problem();
+api::ProblemDetails not_found_problem(const JobId& id);
+api::ProblemDetails still_running_problem(const JobId& id);
+api::ProblemDetails render_failed_problem(const JobId& id,
+                                          const api::ProblemDetails* why); // nullptr: canceled
+api::ProblemDetails expired_problem(const JobId& id);
+api::ProblemDetails damaged_problem(const JobId& id); // the stored picture is not what was stored
+
+// How a job fails.
+api::ProblemDetails time_limit_problem(double limit_s);
+api::ProblemDetails non_finite_problem(std::uint64_t samples);
+api::ProblemDetails too_many_attempts_problem(const JobId& id, std::uint32_t attempts);
+api::ProblemDetails out_of_memory_problem(const JobId& id);
+api::ProblemDetails internal_problem(const JobId& id); // the log has the rest
+api::ProblemDetails faults_problem(const std::vector<renderer::Fault>& faults);
+
+// A mesh that does not import, told at every object that uses it.
+std::vector<renderer::Fault>
+faults_of(const ImportFailure& failure, const renderer::SceneDescription& scene, std::uint32_t mesh);
+
+} // namespace server

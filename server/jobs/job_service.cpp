@@ -1,0 +1,292 @@
+#include "server/jobs/job_service.h"
+
+#include "server/jobs/clock.h"
+#include "server/jobs/job_problems.h"
+#include "server/jobs/job_views.h"
+#include "server/jobs/live_jobs.h"
+#include "server/jobs/picture_cache.h"
+#include "server/jobs/result_keeper.h"
+#include "server/jobs/submission.h"
+#include "server/jobs/wait_estimate.h"
+#include "server/jobs/worker.h"
+
+#include <algorithm>
+#include <atomic>
+#include <string_view>
+#include <utility>
+
+namespace server {
+
+namespace {
+
+constexpr std::size_t kPictureCacheBytes = 64u << 20;
+constexpr std::chrono::seconds kRemovalPatience{5};
+
+std::chrono::seconds retention_of(const renderer::Limits& limits)
+{
+    constexpr std::uint64_t kForever = 100ull * 365 * 86400;
+    return std::chrono::seconds(std::min(limits.retention_s, kForever));
+}
+
+} // namespace
+
+struct JobService::State {
+    State(Store& store_, BlobStore& blobs_, ImportService& imports_, const JobServiceOptions& options_)
+        : store(store_), blobs(blobs_), imports(imports_), options(options_),
+          keeper({store_, blobs_, live, pictures, options_.log, retention_of(options_.limits)}),
+          worker({store_, blobs_, imports_, live, keeper, estimate, options_.log, options_.limits},
+                 options_.threads)
+    {
+    }
+
+    Store& store;
+    BlobStore& blobs;
+    ImportService& imports;
+    JobServiceOptions options;
+    std::atomic<bool> draining{false};
+    LiveJobs live;
+    PictureCache pictures{kPictureCacheBytes};
+    WaitEstimate estimate;
+    ResultKeeper keeper;
+    Worker worker;
+
+    std::optional<api::JobView> view(const JobId& id, const std::optional<LiveJob>& live_job);
+    void end_at_once(const JobId& id, OutcomePtr outcome);
+    std::variant<JobOutcome, api::ProblemDetails> finished(const JobId& id);
+    std::variant<JobImage, api::ProblemDetails> stored_image(const JobId& id, const std::string& digest);
+    bool has_stored_result(const std::string& render_key);
+};
+
+JobService::JobService(Store& store,
+                       BlobStore& blobs,
+                       ImportService& imports,
+                       const JobServiceOptions& options)
+    : state_(std::make_unique<State>(store, blobs, imports, options))
+{
+}
+
+JobService::~JobService()
+{
+    stop();
+}
+
+void JobService::start()
+{
+    state_->keeper.start();
+    state_->worker.start();
+}
+
+void JobService::stop()
+{
+    state_->draining = true;
+    state_->live.close();
+    state_->keeper.stop_waiting();
+    state_->worker.stop();
+    state_->keeper.stop();
+}
+
+bool JobService::draining() const
+{
+    return state_->draining;
+}
+
+// A result whose picture is gone or was found damaged is not for others.
+bool JobService::State::has_stored_result(const std::string& render_key)
+{
+    const std::optional<JobResult> known = store.find_result({}, render_key);
+    return known && blobs.has(BlobStore::Kind::result, known->image_digest);
+}
+
+std::variant<SubmitAnswer, api::ProblemDetails> JobService::submit(const SubmitWords& words)
+{
+    State& s = *state_;
+    if (s.draining) return draining_problem();
+    auto read = read_submission(words, s.options.limits, s.blobs, s.imports);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&read)) return std::move(*problem);
+    auto& submission = std::get<Submission>(read);
+    SubmitRequest& request = submission.request;
+    request.allow_reuse = request.allow_reuse && s.has_stored_result(request.spec.render_key);
+    for (const std::string& digest : request.spec.asset_digests)
+        s.blobs.touch(BlobStore::Kind::asset, digest);
+
+    const JobId id = request.id;
+    const OutcomePtr outcome = s.live.add(id, std::move(submission.sharing)); // before a worker can claim it
+    Submitted submitted;
+    try {
+        submitted = s.store.submit(request);
+    } catch (const StoreError& error) {
+        s.live.forget(id);
+        s.options.log.write(LogLevel::error, "job_not_stored", {{"job", id}, {"what", error.what()}});
+        if (error.storage_full) return storage_full_problem();
+        throw;
+    }
+    if (submitted.status != SubmitStatus::accepted || is_final(submitted.job.state))
+        s.live.forget(id);
+    else if (outcome)
+        s.keeper.keep({{id}, std::nullopt, outcome});
+
+    switch (submitted.status) {
+    case SubmitStatus::queue_full:
+        return queue_full_problem(request.queue_limit);
+    case SubmitStatus::key_reused:
+        return key_reused_problem();
+    case SubmitStatus::accepted:
+    case SubmitStatus::replayed:
+        break;
+    }
+    const LiveJobs::Snapshot now = s.live.snapshot(submitted.job.id);
+    const bool waits = submitted.job.state == StoredState::queued;
+    return SubmitAnswer{
+        view_of(submitted.job, now.job, waits ? s.store.queue_position(submitted.job.id) : std::nullopt),
+        submitted.status == SubmitStatus::replayed};
+}
+
+std::optional<api::JobView> JobService::State::view(const JobId& id, const std::optional<LiveJob>& live_job)
+{
+    const std::optional<JobRecord> record = store.get({}, id);
+    if (!record) return std::nullopt;
+    const bool waits = record->state == StoredState::queued;
+    return view_of(*record, live_job, waits ? store.queue_position(id) : std::nullopt);
+}
+
+std::optional<api::JobView> JobService::get(const JobId& id)
+{
+    const LiveJobs::Snapshot now = state_->live.snapshot(id);
+    return state_->view(id, now.job);
+}
+
+std::optional<api::JobView>
+JobService::wait(const JobId& id, std::chrono::milliseconds timeout, const std::string& known_etag)
+{
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    for (;;) {
+        const LiveJobs::Snapshot now = state_->live.snapshot(id);
+        std::optional<api::JobView> view = state_->view(id, now.job);
+        if (!view || api::is_final(view->state)) return view;
+        if (!known_etag.empty() && etag_of(*view) != known_etag) return view;
+        if (!state_->live.wait(id, now.mark, deadline, !known_etag.empty())) return get(id);
+    }
+}
+
+std::variant<std::string, api::ProblemDetails> JobService::list(const ListQuery& query)
+{
+    const ListPage page = state_->store.list(query);
+    std::vector<api::JobView> views;
+    views.reserve(page.jobs.size());
+    for (const JobRecord& record : page.jobs)
+        views.push_back(view_of(record, state_->live.snapshot(record.id).job, std::nullopt));
+    return api::write_job_list(views, page.next_cursor);
+}
+
+std::optional<api::JobView> JobService::cancel(const JobId& id)
+{
+    State& s = *state_;
+    const LiveJobs::Snapshot before = s.live.snapshot(id);
+    if (before.job && before.job->outcome) return get(id); // it ended; only its row is on the way
+    s.live.request_stop(id, StopCause::cancel);
+    const std::optional<JobRecord> record = s.store.cancel({}, id, unix_ms());
+    if (!record) return std::nullopt;
+    if (is_final(record->state))
+        s.live.forget(id);
+    else
+        s.live.request_stop(id, StopCause::cancel); // claimed in between
+    return get(id);
+}
+
+bool JobService::remove(const JobId& id)
+{
+    State& s = *state_;
+    if (!cancel(id)) return false;
+    if (!s.live.wait_forgotten(id, std::chrono::steady_clock::now() + kRemovalPatience))
+        throw StoreError("job " + id + " did not end in time to be removed", false);
+    const std::optional<JobRecord> record = s.store.get({}, id);
+    if (!record || !s.store.remove({}, id)) return false;
+    s.live.forget(id); // wakes who waits for it
+    if (record->result) s.keeper.collect(record->result->image_digest);
+    return true;
+}
+
+std::variant<JobOutcome, api::ProblemDetails> JobService::State::finished(const JobId& id)
+{
+    const LiveJobs::Snapshot now = live.snapshot(id);
+    const std::optional<JobRecord> record = store.get({}, id);
+    if (!record) return not_found_problem(id);
+    const api::JobView seen = view_of(*record, now.job, std::nullopt);
+    switch (seen.state) {
+    case api::JobState::queued:
+    case api::JobState::preparing:
+    case api::JobState::running:
+    case api::JobState::canceling:
+        return still_running_problem(id);
+    case api::JobState::failed:
+        return render_failed_problem(id, seen.error ? &*seen.error : nullptr);
+    case api::JobState::canceled:
+        return render_failed_problem(id, nullptr);
+    case api::JobState::expired:
+        return expired_problem(id);
+    case api::JobState::succeeded:
+        break;
+    }
+    if (!record->result) return *now.job->outcome;
+    JobOutcome outcome{.phase = LivePhase::succeeded};
+    outcome.result = *record->result;
+    return outcome;
+}
+
+std::variant<JobImage, api::ProblemDetails> JobService::image(const JobId& id)
+{
+    auto ended = state_->finished(id);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&ended)) return std::move(*problem);
+    const auto& outcome = std::get<JobOutcome>(ended);
+    const std::string& digest = outcome.result.image_digest;
+    if (outcome.png) return JobImage{outcome.png, digest};
+    if (PngBytes cached = state_->pictures.find(digest)) return JobImage{std::move(cached), digest};
+    return state_->stored_image(id, digest);
+}
+
+std::variant<JobImage, api::ProblemDetails> JobService::State::stored_image(const JobId& id,
+                                                                            const std::string& digest)
+{
+    try {
+        if (auto bytes = blobs.read(BlobStore::Kind::result, digest)) {
+            auto png = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));
+            pictures.put(digest, png);
+            return JobImage{std::move(png), digest};
+        }
+        options.log.write(LogLevel::error, "picture_missing", {{"job", id}, {"digest", digest}});
+    } catch (const StoreError& error) { // damaged: out of the way, so that the same job renders it anew
+        options.log.write(LogLevel::error, "picture_damaged", {{"job", id}, {"what", error.what()}});
+        const auto hold = keeper.hold_results();
+        blobs.remove(BlobStore::Kind::result, digest);
+    }
+    return damaged_problem(id);
+}
+
+std::variant<std::string, api::ProblemDetails> JobService::report(const JobId& id)
+{
+    auto ended = state_->finished(id);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&ended)) return std::move(*problem);
+    return std::get<JobOutcome>(ended).result.report_json;
+}
+
+std::variant<std::string, api::ProblemDetails> JobService::scene(const JobId& id)
+{
+    auto ended = state_->finished(id);
+    if (auto* outcome = std::get_if<JobOutcome>(&ended)) return std::move(outcome->result.scene_json);
+    const std::optional<JobRecord> record = state_->store.get({}, id);
+    if (!record) return not_found_problem(id);
+    return record->spec.request_json;
+}
+
+int JobService::estimated_wait_s() const
+{
+    const QueueDepth depth = state_->store.depth();
+    return state_->estimate.seconds(depth.queued + depth.leased);
+}
+
+std::string etag_of(const api::JobView& view)
+{
+    return digest_of(std::string_view(api::write_job_view(view)));
+}
+
+} // namespace server

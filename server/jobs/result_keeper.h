@@ -1,0 +1,80 @@
+// ResultKeeper: makes outcomes durable behind the clients' backs, and lets old ones go.
+//
+// A finished picture is served from memory at once; this thread writes it, then its row. If the disk refuses,
+// it tries again until it works or the service stops (then the job is released, and renders again to the same
+// bytes). Threads  one of its own; every function may be called from any thread. Errors   logged here, never
+// thrown, but by collect().
+#pragma once
+
+#include "server/jobs/live_jobs.h"
+#include "server/jobs/picture_cache.h"
+#include "server/log/log.h"
+#include "server/store/blob_store.h"
+#include "server/store/store.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace server {
+
+struct KeptOutcome {
+    std::vector<JobId> queued;  // jobs not claimed that take this outcome
+    std::optional<Lease> lease; // of the job that made it
+    OutcomePtr outcome;
+};
+
+class ResultKeeper {
+public:
+    struct Rooms {
+        Store& store;
+        BlobStore& blobs;
+        LiveJobs& live;
+        PictureCache& pictures;
+        Log log;
+        std::chrono::seconds retention;
+    };
+    explicit ResultKeeper(const Rooms& rooms) : rooms_(rooms) {}
+    ~ResultKeeper() { stop(); }
+    ResultKeeper(const ResultKeeper&) = delete;
+    ResultKeeper& operator=(const ResultKeeper&) = delete;
+
+    void start();
+    void stop_waiting(); // keep() does not wait any more: the service stops
+    void stop();         // writes what it has; what cannot be written is released
+    // Takes it over. With a lease, waits while several others are not yet written: the disk's speed bounds
+    // memory.
+    void keep(KeptOutcome kept);
+    // While this is held, no stored picture is removed.
+    std::unique_lock<std::mutex> hold_results() { return std::unique_lock(results_); }
+    // Removes the picture if no job needs it any more.
+    void collect(const std::string& image_digest);
+
+private:
+    void run(const std::stop_token& stop);
+    bool try_keep(const KeptOutcome& kept);
+    void store_outcome(const KeptOutcome& kept);
+    void store_lease(const Lease& lease, const JobOutcome& outcome);
+    void forget_if_final(const JobId& id);
+    void give_back(const KeptOutcome& kept);
+    void sweep();
+    void collect_all();
+    bool is_needed(const std::string& digest);
+
+    Rooms rooms_;
+    std::mutex results_; // held while pictures are written or removed
+    std::mutex mutex_;
+    std::condition_variable_any change_;
+    bool closing_ = false;
+    std::deque<KeptOutcome> waiting_; // the first one is being written
+    std::jthread thread_;
+};
+
+} // namespace server

@@ -1,0 +1,86 @@
+#include "server/jobs/submission.h"
+
+#include "server/jobs/clock.h"
+#include "server/jobs/job_problems.h"
+#include "server/jobs/sharing.h"
+
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace server {
+
+namespace {
+
+// Meshes that were imported before and found faulty.
+std::vector<renderer::Fault> known_faults(const api::JobRequest& request, const ImportService& imports)
+{
+    std::vector<renderer::Fault> faults;
+    for (std::uint32_t i = 0; i < request.scene.meshes.size(); ++i) {
+        const auto known = imports.known_failure({.name = request.scene.meshes[i].name,
+                                                  .digest = request.scene.meshes[i].digest,
+                                                  .files = request.files,
+                                                  .split = request.settings.acceleration.split});
+        const auto* failure = std::get_if<ImportFailure>(&known);
+        if (failure == nullptr) continue;
+        const std::vector<renderer::Fault> found = faults_of(*failure, request.scene, i);
+        faults.insert(faults.end(), found.begin(), found.end());
+    }
+    return faults;
+}
+
+// Two requests are the same if their bytes and their files are.
+std::string body_digest_of(const SubmitWords& words)
+{
+    std::string text = digest_of(std::string_view(words.body));
+    for (const auto& [name, digest] : words.part_digests)
+        text += '\n' + name + '\t' + digest;
+    return digest_of(std::string_view(text));
+}
+
+std::vector<std::string> asset_digests_of(const api::JobRequest& request)
+{
+    std::set<std::string> digests;
+    for (const auto& [name, digest] : request.files)
+        digests.insert(digest);
+    for (const renderer::MeshReference& mesh : request.scene.meshes)
+        digests.insert(mesh.digest);
+    return {digests.begin(), digests.end()};
+}
+
+} // namespace
+
+std::variant<Submission, api::ProblemDetails> read_submission(const SubmitWords& words,
+                                                              const renderer::Limits& limits,
+                                                              const BlobStore& blobs,
+                                                              const ImportService& imports)
+{
+    const api::ReadContext context{
+        .limits = limits, .files = words.part_digests, .has_asset = [&blobs](std::string_view digest) {
+            return blobs.has(BlobStore::Kind::asset, digest);
+        }};
+    auto read = api::read_job(words.body, context);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&read)) return std::move(*problem);
+    const auto& request = std::get<api::JobRequest>(read);
+    const std::vector<renderer::Fault> faults = known_faults(request, imports);
+    if (!faults.empty()) return faults_problem(faults);
+
+    Submission submission;
+    submission.sharing =
+        sharing_of(request, digest_of(std::string_view(api::canonical_render_text(request))), words.no_cache);
+    SubmitRequest& out = submission.request;
+    out.id = make_job_id();
+    out.idempotency_key = words.idempotency_key;
+    out.body_digest = body_digest_of(words);
+    out.spec = {.request_json = api::write_job(request, false),
+                .render_key = submission.sharing.render_key,
+                .asset_digests = asset_digests_of(request),
+                .priority = request.priority,
+                .labels = request.labels};
+    out.allow_reuse = may_reuse_stored(submission.sharing);
+    out.queue_limit = limits.queue_jobs;
+    out.now_ms = unix_ms();
+    return submission;
+}
+
+} // namespace server
