@@ -24,6 +24,14 @@ struct IdempotencyKey {
 // The order of claims: highest priority first, then oldest.
 using WaitingKey = std::pair<int, std::uint64_t>; // minus priority, sequence
 
+JobRecord without_long_texts(JobRecord job)
+{
+    job.spec.request_json.clear();
+    if (job.result) job.result->report_json.clear();
+    if (job.result) job.result->scene_json.clear();
+    return job;
+}
+
 class MemStore final : public Store {
 public:
     explicit MemStore(StoreClock clock) : clock_(std::move(clock)) {}
@@ -196,7 +204,7 @@ ListPage MemStore::list(const ListQuery& query)
             page.next_cursor = cursor_after(last);
             break;
         }
-        page.jobs.push_back(at->second.record);
+        page.jobs.push_back(without_long_texts(at->second.record));
         last = at->first;
     }
     return page;

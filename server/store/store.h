@@ -140,6 +140,7 @@ public:
 
     virtual Submitted submit(const SubmitRequest& request) = 0;
     virtual std::optional<JobRecord> get(const Tenant& tenant, const JobId& id) = 0;
+    // Without the long texts (request_json, report_json, scene_json), which are empty.
     virtual ListPage list(const ListQuery& query) = 0;
     virtual QueueDepth depth() = 0;
     // How many queued jobs would be claimed before this one; nothing if it is not queued.

@@ -1,0 +1,64 @@
+// Jobs as rows: the SQL of the job database, a function a statement or two.
+//
+// Errors   StoreError. Threads: the connection's.
+#pragma once
+
+#include "server/store/sqlite_connection.h"
+#include "server/store/store.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace server {
+
+struct JobRow {
+    std::int64_t sequence = 0;
+    JobRecord record;
+};
+
+// What a transition needs to know of a job.
+struct JobHead {
+    std::int64_t sequence = 0;
+    StoredState state = StoredState::queued;
+    bool cancel_requested = false;
+    std::uint32_t attempts = 0;
+};
+
+struct KeyRow {
+    std::string body_digest;
+    std::int64_t sequence = 0;
+};
+
+// Reading.
+std::optional<JobRow> read_job(SqliteConnection& db, const Tenant& tenant, const JobId& id);
+std::optional<JobRow> read_job(SqliteConnection& db, std::int64_t sequence);
+std::vector<JobRow> read_jobs_before(SqliteConnection& db, std::int64_t sequence, const ListQuery& query);
+std::optional<JobHead> read_head(SqliteConnection& db, const JobId& id);
+std::optional<JobHead> read_head(SqliteConnection& db, const Tenant& tenant, const JobId& id);
+std::optional<JobHead> read_leased_head(SqliteConnection& db, const Lease& lease); // nothing: fenced
+std::optional<KeyRow> read_key(SqliteConnection& db, const Tenant& tenant, const std::string& key);
+std::optional<JobResult>
+read_reusable(SqliteConnection& db, const Tenant& tenant, const std::string& render_key);
+QueueDepth read_depth(SqliteConnection& db);
+bool any_waiting(SqliteConnection& db);
+std::optional<std::uint32_t> read_queue_position(SqliteConnection& db, const JobId& id);
+std::vector<std::string> read_referenced_digests(SqliteConnection& db);
+
+// Writing, inside a transaction.
+std::int64_t insert_job(SqliteConnection& db, const JobRecord& job); // its sequence
+void insert_key(SqliteConnection& db, const SubmitRequest& request, std::int64_t sequence);
+void insert_result(SqliteConnection& db, std::int64_t sequence, const JobResult& result);
+// Queued: not started, not finished. Final: finished at `now_ms`.
+void set_state(SqliteConnection& db, std::int64_t sequence, StoredState state, std::int64_t now_ms);
+void set_error(SqliteConnection& db, std::int64_t sequence, const std::string& error_json);
+void set_reused(SqliteConnection& db, std::int64_t sequence);
+void request_cancel(SqliteConnection& db, std::int64_t sequence);
+void uncount_attempt(SqliteConnection& db, std::int64_t sequence);
+std::optional<Lease> lease_next(SqliteConnection& db, std::int64_t now_ms); // nothing waits
+void delete_job(SqliteConnection& db, std::int64_t sequence);
+std::size_t expire_jobs(SqliteConnection& db, std::int64_t before_ms); // and forgets
+void delete_keys(SqliteConnection& db, std::int64_t before_ms);
+
+} // namespace server
