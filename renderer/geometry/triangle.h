@@ -109,6 +109,36 @@ T lower_bound_of_t(
     return t - delta_t > least ? t - delta_t : least;
 }
 
+// In a thin triangle the weights are poorly determined along its length, and the point they make lies off the ray. This
+// moves weight between the ends of the longest edge until the point is beside the ray again; the weights stay within
+// [0, 1]. Nothing changes where the point is on the ray to rounding.
+template <typename T>
+Vec3<T> draw_onto_ray(Vec3<T> weights, const Corner<T>& a, const Corner<T>& b, const Corner<T>& c)
+{
+    const T x = weights.x * a.x + weights.y * b.x + weights.z * c.x;
+    const T y = weights.x * a.y + weights.y * b.y + weights.z * c.y;
+    const T size = std::max(max3(a.x, b.x, c.x), max3(a.y, b.y, c.y));
+    if (!(std::max(std::abs(x), std::abs(y)) > gamma<T>(16) * size)) return weights;
+    const Corner<T>* const corners[3] = {&a, &b, &c};
+    std::size_t from = 0, to = 1;
+    T longest = -1, along = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = i == 2 ? 0 : i + 1;
+        const T ex = corners[j]->x - corners[i]->x, ey = corners[j]->y - corners[i]->y;
+        const T squared = ex * ex + ey * ey;
+        if (squared <= longest) continue;
+        longest = squared;
+        from = i;
+        to = j;
+        along = (x * ex + y * ey) / squared;
+    }
+    if (!(longest > 0)) return weights;
+    const T shift = std::clamp(along, -weights[from], weights[to]);
+    weights[from] += shift;
+    weights[to] -= shift;
+    return weights;
+}
+
 } // namespace watertight
 
 // For many triangles: the ray is traceable and the triangle not degenerate, as the caller has seen to.
@@ -131,7 +161,7 @@ intersect_watertight(const WatertightRay<T>& ray, T t_min, T t_max, Vec3<T> a, V
     const T det = e.x + e.y + e.z;
     if (det == 0) return std::nullopt;
     const T inv_det = 1 / det;
-    const Vec3<T> weights = e * inv_det;
+    const Vec3<T> weights = wt::draw_onto_ray(e * inv_det, pa, pb, pc);
     const T t = weights.x * pa.z + weights.y * pb.z + weights.z * pc.z;
     if (!(t < t_max) || !(t > t_min)) return std::nullopt;
     if (!(wt::lower_bound_of_t(t, inv_det, e, pa, pb, pc) > t_min)) return std::nullopt;

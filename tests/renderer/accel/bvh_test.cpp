@@ -1,0 +1,215 @@
+#include "renderer/accel/bvh.h"
+#include "renderer/accel/traverse.h"
+#include "tests/renderer/accel/random_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace {
+
+using namespace renderer;
+using random_scenes::Random;
+
+template <typename T>
+std::vector<Bounds3<T>> random_boxes(Random& random, std::size_t count)
+{
+    std::vector<Bounds3<T>> boxes(count);
+    for (Bounds3<T>& box : boxes) {
+        const Vec3d low = random.in_box({-1, -1, -1}, {1, 1, 1}),
+                    size = random.in_box({0, 0, 0}, {.05, .05, .05});
+        for (const Vec3d p : {low, low + size})
+            box.extend(Vec3<T>{static_cast<T>(p.x), static_cast<T>(p.y), static_cast<T>(p.z)});
+    }
+    return boxes;
+}
+
+template <typename T>
+Bvh<T> build(const std::vector<Bounds3<T>>& boxes, BvhSplit split, unsigned threads = 1)
+{
+    ThreadPool pool(threads);
+    return *build_bvh<T>(boxes, {.split = split}, pool);
+}
+
+template <typename T>
+bool contains(const BvhNode<T>& node, const Bounds3<T>& box)
+{
+    Bounds3<T> both{node.lower, node.upper};
+    both.extend(box);
+    return both == Bounds3<T>{node.lower, node.upper};
+}
+
+// Every primitive in one leaf exactly, every box within its parents' boxes, leaves small, depth as told.
+template <typename T>
+unsigned expect_sound(const Bvh<T>& bvh, const std::vector<Bounds3<T>>& boxes, std::uint32_t leaf_size = 4)
+{
+    std::vector<std::uint32_t> sorted = bvh.order;
+    std::sort(sorted.begin(), sorted.end());
+    EXPECT_EQ(sorted.size(), boxes.size());
+    for (std::uint32_t i = 0; i < sorted.size(); ++i)
+        EXPECT_EQ(sorted[i], i);
+    struct Visit {
+        BvhNode<T> node;
+        unsigned depth;
+    };
+    std::vector<Visit> open{{bvh.root, 0}};
+    std::size_t seen = 0;
+    unsigned deepest = 0;
+    while (!open.empty()) {
+        const Visit visit = open.back();
+        open.pop_back();
+        deepest = std::max(deepest, visit.depth);
+        if (visit.node.count != 0) {
+            EXPECT_LE(visit.node.count, leaf_size);
+            seen += visit.node.count;
+            for (std::uint32_t i = 0; i < visit.node.count; ++i)
+                EXPECT_TRUE(contains(visit.node, boxes[bvh.order[visit.node.first + i]]));
+            continue;
+        }
+        for (const BvhNode<T>& child : bvh.pairs[visit.node.first].child) {
+            EXPECT_TRUE(contains(visit.node, Bounds3<T>{child.lower, child.upper}));
+            open.push_back({child, visit.depth + 1});
+        }
+    }
+    EXPECT_EQ(seen, boxes.size());
+    EXPECT_EQ(deepest, bvh.depth);
+    EXPECT_LE(deepest, kMaxBvhDepth);
+    return deepest;
+}
+
+class BvhOfEitherSplit : public ::testing::TestWithParam<BvhSplit> {};
+INSTANTIATE_TEST_SUITE_P(Split,
+                         BvhOfEitherSplit,
+                         ::testing::Values(BvhSplit::sah, BvhSplit::midpoint),
+                         [](const auto& split) { return split.param == BvhSplit::sah ? "sah" : "midpoint"; });
+
+TEST_P(BvhOfEitherSplit, HoldsEveryPrimitiveOnce)
+{
+    Random random(1);
+    for (const std::size_t count : {1u, 2u, 3u, 5u, 100u, 20000u}) {
+        const auto narrow = random_boxes<float>(random, count);
+        expect_sound(build(narrow, GetParam()), narrow);
+        const auto wide = random_boxes<double>(random, count);
+        expect_sound(build(wide, GetParam()), wide);
+    }
+    const std::vector<Bounds3f> none;
+    EXPECT_TRUE(build(none, GetParam()).empty());
+}
+
+TEST_P(BvhOfEitherSplit, IsTheSameOnAnyNumberOfThreads)
+{
+    Random random(2);
+    const auto boxes = random_boxes<float>(random, 60000);
+    const Bvh<float> one = build(boxes, GetParam(), 1);
+    for (const unsigned threads : {2u, 3u, 8u}) {
+        const Bvh<float> many = build(boxes, GetParam(), threads);
+        ASSERT_EQ(many.order, one.order);
+        ASSERT_EQ(many.pairs.size(), one.pairs.size());
+        EXPECT_EQ(std::memcmp(many.pairs.data(), one.pairs.data(), one.pairs.size() * sizeof one.pairs[0]),
+                  0);
+    }
+    EXPECT_GT(one.pairs.size(), 60000u / 4); // large enough to have been shared among threads
+}
+
+TEST_P(BvhOfEitherSplit, EndsWhereNothingTellsPrimitivesApart)
+{
+    // Copies, and boxes of many sizes around one centre.
+    const std::vector<Bounds3f> copies(100000, Bounds3f{{1, 2, 3}, {4, 5, 6}});
+    expect_sound(build(copies, GetParam()), copies);
+    std::vector<Bounds3f> nested;
+    for (int i = 1; i <= 1000; ++i) {
+        const auto r = static_cast<float>(i);
+        nested.push_back({{-r, -r, -r}, {r, r, r}});
+    }
+    expect_sound(build(nested, GetParam()), nested);
+    const std::vector<Bounds3f> points(1000, Bounds3f{{0, 0, 0}, {0, 0, 0}});
+    expect_sound(build(points, GetParam()), points);
+}
+
+TEST_P(BvhOfEitherSplit, StaysShallowOnALineOfGrowingSteps)
+{
+    std::vector<Bounds3f> narrow;
+    double x = 1;
+    for (int i = 0; i < 100000; ++i, x *= 1.0005) {
+        const auto low = static_cast<float>(x), high = static_cast<float>(x * 1.0002);
+        narrow.push_back({{low, 0, 0}, {high, 0, 0}});
+    }
+    ASSERT_TRUE(std::isfinite(narrow.back().upper.x));
+    expect_sound(build(narrow, GetParam()), narrow);
+    std::vector<Bounds3d> wide; // up to 2^1000, areas far beyond double's range
+    x = 1;
+    for (int i = 0; i < 1000; ++i, x *= 2)
+        wide.push_back({{x, x, -x}, {x * 1.5, x * 1.5, x}});
+    expect_sound(build(wide, GetParam()), wide);
+}
+
+TEST_P(BvhOfEitherSplit, GivesUpWhenAskedToStop)
+{
+    Random random(5);
+    const auto boxes = random_boxes<float>(random, 1000);
+    ThreadPool pool(2);
+    std::stop_source stop;
+    EXPECT_TRUE(build_bvh<float>(boxes, {.split = GetParam()}, pool, stop.get_token()));
+    stop.request_stop();
+    EXPECT_FALSE(build_bvh<float>(boxes, {.split = GetParam()}, pool, stop.get_token()));
+}
+
+TEST_P(BvhOfEitherSplit, ShowsARayEveryLeafItMayTouch)
+{
+    Random random(6);
+    const auto boxes = random_boxes<float>(random, 3000);
+    const Bvh<float> bvh = build(boxes, GetParam());
+    std::size_t touched = 0, shown = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3f origin = to_float(random.direction() * 2.0);
+        const Vec3f direction = to_float(random.in_box({-1, -1, -1}, {1, 1, 1})) - origin;
+        const SlabRay<float> ray(origin, reciprocal(direction), 0);
+        std::vector<bool> seen(boxes.size());
+        traverse(bvh, ray, 0.0f, 100.0f, [&](std::uint32_t first, std::uint32_t count, float&) {
+            for (std::uint32_t k = first; k < first + count; ++k)
+                seen[bvh.order[k]] = true;
+            shown += count;
+            return false;
+        });
+        for (std::size_t k = 0; k < boxes.size(); ++k) {
+            float entry = 0, exit = 0;
+            if (!ray.meets(boxes[k].lower, boxes[k].upper, 0.0f, 100.0f, entry, exit)) continue;
+            ++touched;
+            ASSERT_TRUE(seen[k]);
+        }
+    }
+    EXPECT_GT(touched, 500u);
+    EXPECT_LT(shown, 2000u * 3000u / 10) << "and few others";
+}
+
+TEST(Bvh, BySurfaceAreaVisitsLessThanByMidpoint)
+{
+    // A dense clump and a few strays: what the heuristic is for.
+    Random random(8);
+    std::vector<Bounds3f> boxes;
+    for (int i = 0; i < 5000; ++i) {
+        const Vec3d at =
+            i < 4900 ? random.direction() * 0.01 * random.uniform() : random.direction() * random.uniform();
+        const double size = i < 4900 ? 0.0002 : 0.2;
+        boxes.push_back({to_float(at), to_float(at + Vec3d{size, size, size})});
+    }
+    std::size_t visits[2] = {};
+    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint}) {
+        const Bvh<float> bvh = build(boxes, split);
+        Random rays(9);
+        for (int i = 0; i < 2000; ++i) {
+            const SlabRay<float> ray(
+                to_float(rays.direction() * 2.0), reciprocal(to_float(rays.direction())), 0);
+            traverse(bvh, ray, 0.0f, 100.0f, [&](std::uint32_t, std::uint32_t count, float&) {
+                visits[split == BvhSplit::sah ? 0 : 1] += count;
+                return false;
+            });
+        }
+    }
+    EXPECT_LT(visits[0], visits[1]);
+}
+
+} // namespace
