@@ -24,16 +24,17 @@ SampleRange samples_of_pass(std::uint32_t pass)
     return {pass == 0 ? 0 : clamped(end_of_pass(pass - 1)), clamped(end_of_pass(pass))};
 }
 
-std::vector<SampleRange> slices_of(SampleRange range)
+SampleRange samples_of_slice(std::uint32_t slice)
 {
-    std::vector<SampleRange> slices;
-    for (std::uint32_t first = range.first; first < range.end;) {
-        std::uint32_t end = first < kSlice ? std::max(1u, first * 2) : first + kSlice;
-        end = std::min(end, range.end);
-        slices.push_back({first, end});
-        first = end;
-    }
-    return slices;
+    if (slice < 3) return samples_of_pass(slice);
+    const std::uint32_t first = kSlice * (slice - 2);
+    return {first, first + kSlice};
+}
+
+std::uint32_t slice_number(std::uint32_t samples)
+{
+    if (samples <= kSlice) return samples <= 2 ? samples : 3;
+    return 2 + (samples - 1) / kSlice + 1;
 }
 
 std::uint32_t passes_for(std::uint32_t samples)

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 namespace renderer {
 
@@ -19,8 +18,11 @@ struct SampleRange {
 
 SampleRange samples_of_pass(std::uint32_t pass);
 
-// Slices of the samples in `range`, which begins at a pass; the last one may be cut short by range.end.
-std::vector<SampleRange> slices_of(SampleRange range);
+// Slices are numbered over all passes; slice_number(samples) is that of the slice which begins with this
+// sample, or the number of slices that make so many samples. A render that ends within a slice takes what is
+// before its end.
+SampleRange samples_of_slice(std::uint32_t slice);
+std::uint32_t slice_number(std::uint32_t samples);
 
 // How many passes it takes until `samples` are complete.
 std::uint32_t passes_for(std::uint32_t samples);

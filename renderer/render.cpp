@@ -121,22 +121,28 @@ private:
     // All units of the range, slice by slice over all tiles, merged in that order.
     void run_samples(SampleRange range)
     {
-        const std::vector<SampleRange> slices = slices_of(range);
         const std::size_t tiles = grid_.size();
+        const std::uint32_t first_slice = slice_number(range.first),
+                            slices = slice_number(range.end) - first_slice;
+        const auto slice_of = [&](std::size_t number) {
+            const SampleRange slice =
+                samples_of_slice(first_slice + static_cast<std::uint32_t>(number / tiles));
+            return SampleRange{slice.first, std::min(slice.end, range.end)};
+        };
         const auto merge = [&](std::size_t number, TracedUnit unit) {
             film_.merge(unit.sums);
             tally_ += unit.tally;
-            const SampleRange& slice = slices[number / tiles];
+            const SampleRange slice = slice_of(number);
             const double share = static_cast<double>(number % tiles + 1) / static_cast<double>(tiles);
             samples_done_ = slice.first + slice.count() * share;
             samples_complete_ = share < 1 ? slice.first : slice.end;
         };
         OrderedMerge<TracedUnit, decltype(merge)> results(0, window(), merge);
         const auto body = [&](std::size_t number, unsigned) {
-            const WorkUnit unit{grid_.tile(number % tiles), slices[number / tiles]};
+            const WorkUnit unit{grid_.tile(number % tiles), slice_of(number)};
             trace_and_put(unit, number, results);
         };
-        pool_.run(slices.size() * tiles, body, stop_, settings_.acceleration.threads);
+        pool_.run(slices * tiles, body, stop_, settings_.acceleration.threads);
         film_.samples = range.end;
     }
 

@@ -15,6 +15,9 @@ struct Rgb {
     friend constexpr bool operator==(Rgb, Rgb) = default;
 };
 
-constexpr bool is_black(Rgb c) { return c.r == 0 && c.g == 0 && c.b == 0; }
+constexpr bool is_black(Rgb c)
+{
+    return c.r == 0 && c.g == 0 && c.b == 0;
+}
 
 } // namespace renderer

@@ -10,11 +10,11 @@ namespace {
 
 constexpr Vec3d kViewFrom{0.35, 0.3, 1}; // from the scene's centre towards the assumed camera
 constexpr double kFovDeg = 40;
-constexpr double kFill = 0.9; // share of the frame that the bounds may fill
+constexpr double kFill = 0.96; // share of the frame that the bounds may fill
 
 // With these a diffuse white surface that faces the sun stays below 1: L = sky + sun / pi, so nothing clips.
-constexpr Rgb kSkyRadiance{0.34f, 0.36f, 0.39f};
-constexpr Rgb kSunIrradiance{2.0f, 1.92f, 1.78f};
+constexpr Rgb kSkyRadiance{0.24f, 0.26f, 0.29f};
+constexpr Rgb kSunIrradiance{2.3f, 2.2f, 2.05f};
 constexpr Vec3d kSunTravels{0.45, -1, -0.65}; // from the upper left, in front
 
 // How far from `center` a camera must stand for every corner to be in its frame.

@@ -1,0 +1,213 @@
+#include "renderer/render.h"
+#include "tests/support/render_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <limits>
+#include <thread>
+
+using namespace renderer;
+using tests::digest;
+using tests::kitchen_sink;
+using tests::make_ready;
+using tests::render_description;
+using tests::TestScene;
+
+TEST(Render, GivesTheSameBitsOnAnyNumberOfThreads)
+{
+    const std::uint64_t want = digest(render_description(kitchen_sink(), 1).film);
+    for (unsigned threads = 2; threads <= 8; ++threads)
+        EXPECT_EQ(digest(render_description(kitchen_sink(), threads).film), want) << threads;
+    TestScene limited = kitchen_sink();
+    limited.settings.acceleration.threads = 3; // of a pool of 8
+    const RenderResult result = render_description(limited, 8);
+    EXPECT_EQ(digest(result.film), want);
+    EXPECT_EQ(result.report.threads, 3u);
+}
+
+TEST(Render, GivesTheSameBitsForEveryTileSize)
+{
+    const std::uint64_t want = digest(render_description(kitchen_sink(), 1).film);
+    for (const std::uint32_t tile : {1u, 7u, 16u, 64u, 1000000u, 0xffffffffu}) {
+        TestScene test = kitchen_sink();
+        test.settings.acceleration.tile_px = tile;
+        EXPECT_EQ(digest(render_description(test, 2).film), want) << tile;
+    }
+}
+
+TEST(Render, GivesTheSameBitsForEverySplitOfTheTree)
+{
+    TestScene test = kitchen_sink();
+    const std::uint64_t want = digest(render_description(test).film);
+    test.settings.acceleration.split = BvhSplit::midpoint;
+    EXPECT_EQ(digest(render_description(test).film), want);
+}
+
+TEST(Render, GivesACropThePixelsOfTheFullPicture)
+{
+    TestScene test = kitchen_sink();
+    const Film full = render_description(test).film;
+    for (const PixelRect region : {PixelRect{0, 0, 1, 1},
+                                   PixelRect{69, 49, 1, 1},
+                                   PixelRect{13, 9, 30, 20},
+                                   PixelRect{0, 25, 70, 1}}) {
+        test.settings.image.region = region;
+        const Film crop = render_description(test).film;
+        for (std::uint32_t y = 0; y < region.height; ++y)
+            for (std::uint32_t x = 0; x < region.width; ++x)
+                ASSERT_EQ(crop.sums[y * region.width + x], full.sums[(region.y + y) * 70 + region.x + x]);
+    }
+}
+
+TEST(Render, DependsOnTheSeed)
+{
+    TestScene test = kitchen_sink();
+    const std::uint64_t one = digest(render_description(test).film);
+    test.settings.seed = 2;
+    EXPECT_NE(digest(render_description(test).film), one);
+}
+
+TEST(Render, StoppedByTimeEqualsTheRenderOfThatManySamples)
+{
+    TestScene test = kitchen_sink();
+    test.settings.quality = {};
+    test.settings.quality.time_s = 0.05;
+    const RenderResult stopped = render_description(test);
+    EXPECT_GE(stopped.report.accuracy.samples, 1u);
+    test.settings.quality = {};
+    test.settings.quality.samples = stopped.report.accuracy.samples;
+    EXPECT_EQ(digest(render_description(test).film), digest(stopped.film));
+}
+
+TEST(Render, MakesOneWholePassHoweverShortTheTime)
+{
+    TestScene test = kitchen_sink();
+    test.settings.quality = {};
+    test.settings.quality.time_s = 1e-9;
+    const RenderResult result = render_description(test);
+    EXPECT_EQ(result.report.accuracy.samples, 1u);
+    EXPECT_EQ(result.report.accuracy.stop_reason, StopReason::time);
+}
+
+TEST(Render, StopsAtTheSamplesWhereTimeIsLeft)
+{
+    TestScene test = kitchen_sink();
+    test.settings.quality.samples = 7; // within a pass
+    const std::uint64_t want = digest(render_description(test).film);
+    test.settings.quality.time_s = 1000;
+    const RenderResult both = render_description(test);
+    EXPECT_EQ(both.report.accuracy.samples, 7u);
+    EXPECT_EQ(both.report.accuracy.stop_reason, StopReason::samples);
+    EXPECT_EQ(digest(both.film), want);
+
+    test.settings.quality.samples.reset();
+    test.settings.quality.max_samples = 6;
+    EXPECT_EQ(render_description(test).report.accuracy.samples, 6u);
+}
+
+TEST(Render, TakesTheDefaultSamplesWhereNothingIsSaid)
+{
+    TestScene test = kitchen_sink();
+    test.settings.quality = {};
+    test.settings.image.region = PixelRect{30, 20, 4, 4};
+    EXPECT_EQ(render_description(test).report.accuracy.samples, kDefaultSamples);
+}
+
+TEST(Render, CountsItsRays)
+{
+    const TestScene test = kitchen_sink();
+    const RenderReport report = render_description(test).report;
+    EXPECT_EQ(report.timing.camera_rays, 70u * 50 * 7);
+    EXPECT_GT(report.timing.shadow_rays, 0u);
+    EXPECT_LE(report.timing.shadow_rays, 4 * report.timing.camera_rays); // three lights and the environment
+    EXPECT_EQ(report.numerics.non_finite_samples, 0u);
+    EXPECT_FALSE(report.models.used.empty());
+    EXPECT_EQ(report.geometry.instances, 6u);
+}
+
+TEST(Render, DropsAndCountsSamplesThatAreNotFinite)
+{
+    TestScene test = kitchen_sink();
+    const float huge = std::numeric_limits<float>::max();
+    test.description.lights.emplace_back(DirectionalLight{{0, -1, 0}, {huge, huge, huge}});
+    test.description.lights.emplace_back(DirectionalLight{{0, -1, 0}, {huge, huge, huge}});
+    test.description.lights.emplace_back(DirectionalLight{{0, -1, 0}, {huge, huge, huge}});
+    test.description.lights.emplace_back(DirectionalLight{{0, -1, 0}, {huge, huge, huge}});
+    test.description.materials[0].material = PhongMaterial{.diffuse = {1, 1, 1}, .form = PhongForm::classic};
+    const RenderResult result = render_description(test);
+    EXPECT_GT(result.report.numerics.non_finite_samples, 0u);
+    for (const RgbSum& sum : result.film.sums)
+        ASSERT_TRUE(std::isfinite(sum.r + sum.g + sum.b));
+}
+
+TEST(Render, RendersThinAndSinglePixelPictures)
+{
+    for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 3000u}, {3000u, 1u}}) {
+        TestScene test = kitchen_sink();
+        test.settings.image.width_px = width;
+        test.settings.image.height_px = height;
+        test.settings.quality.samples = 1;
+        EXPECT_EQ(render_description(test).film.sums.size(), std::size_t{width} * height);
+    }
+}
+
+TEST(Render, GivesNothingWhenItIsStopped)
+{
+    TestScene test = kitchen_sink();
+    test.settings.quality.samples = 1u << 30; // days
+    ThreadPool pool(4);
+    const auto ready = make_ready(test, pool);
+    std::stop_source source;
+    std::atomic<bool> told = false;
+    const auto result =
+        render(*ready.scene, ready.plan, test.settings, pool, source.get_token(), [&](const RenderProgress&) {
+            told = true;
+            source.request_stop(); // after the first sign of life
+        });
+    EXPECT_FALSE(result);
+    EXPECT_TRUE(told);
+    // And the pool works on.
+    EXPECT_EQ(
+        digest(render_description(kitchen_sink()).film),
+        digest(render(*make_ready(kitchen_sink(), pool).scene, ready.plan, kitchen_sink().settings, pool)
+                   ->film));
+}
+
+TEST(Render, TellsItsProgressOneAtATimeAndNeverBackwards)
+{
+    TestScene test = kitchen_sink();
+    test.settings.quality = {};
+    test.settings.quality.samples = 96;
+    ThreadPool pool(4);
+    const auto ready = make_ready(test, pool);
+    std::atomic<int> inside = 0;
+    double fraction = 0;
+    RenderProgress last;
+    const auto result =
+        render(*ready.scene, ready.plan, test.settings, pool, {}, [&](const RenderProgress& p) {
+            EXPECT_EQ(++inside, 1);
+            EXPECT_GE(p.fraction, fraction);
+            EXPECT_GE(p.samples, last.samples);
+            EXPECT_GE(p.pass, last.pass);
+            fraction = p.fraction;
+            last = p;
+            --inside;
+        });
+    ASSERT_TRUE(result);
+    EXPECT_EQ(last.fraction, 1);
+    EXPECT_EQ(last.samples, 96u);
+    EXPECT_EQ(last.pass, 10u); // 1 1 2 4 8 and five of 16
+}
+
+TEST(Render, SharesOneHeavyTileAmongThreads)
+{
+    // One tile holds the whole picture: its slices are the units of work, and no sum depends on who took
+    // them.
+    TestScene test = kitchen_sink();
+    test.settings.image.width_px = test.settings.image.height_px = 16;
+    test.settings.quality.samples = 64;
+    const std::uint64_t want = digest(render_description(test, 1).film);
+    for (const unsigned threads : {2u, 5u, 8u})
+        EXPECT_EQ(digest(render_description(test, threads).film), want);
+}
