@@ -1,0 +1,13 @@
+// The sub-commands of heliograph-bench: each adds itself to the command line and runs when it is named.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace bench {
+
+void add_service(CLI::App& app);
+void add_tiles(CLI::App& app);
+
+} // namespace bench
