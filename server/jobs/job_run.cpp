@@ -64,6 +64,7 @@ JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, renderer:
     executed.scene = std::move(scene.description);
     outcome.result.scene_json = api::write_job(executed);
     outcome.result.samples = rendered.report.accuracy.samples;
+    outcome.result.reusable = rendered.report.accuracy.stop_reason == renderer::StopReason::samples;
     outcome.non_finite_samples = rendered.report.numerics.non_finite_samples;
     outcome.png = std::move(bytes);
     return outcome;

@@ -9,6 +9,7 @@
 #include "server/jobs/submission.h"
 #include "server/jobs/wait_estimate.h"
 #include "server/jobs/worker.h"
+#include "server/store/store_rules.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,7 @@
 #include "server/jobs/job_views.h"
 
+#include "server/store/store_rules.h"
+
 namespace server {
 
 namespace {
@@ -76,11 +78,6 @@ void add_outcome(api::JobView& view, const JobOutcome& outcome)
 }
 
 } // namespace
-
-bool is_final(StoredState state)
-{
-    return state != StoredState::queued && state != StoredState::leased;
-}
 
 api::JobView view_of(const JobRecord& record,
                      const std::optional<LiveJob>& live,

@@ -15,6 +15,4 @@ api::JobView view_of(const JobRecord& record,
                      const std::optional<LiveJob>& live,
                      std::optional<std::uint32_t> queue_position);
 
-bool is_final(StoredState state);
-
 } // namespace server

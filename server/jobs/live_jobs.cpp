@@ -47,10 +47,10 @@ bool LiveJobs::is_under_way(const std::string& render_key) const
 OutcomePtr LiveJobs::published_result(const Sharing& sharing) const
 {
     const auto same_key = by_key_.find(sharing.render_key);
-    if (same_key == by_key_.end() || !sharing.outlives_render) return nullptr;
+    if (same_key == by_key_.end()) return nullptr;
     for (const JobId& other : same_key->second) {
         const OutcomePtr& outcome = jobs_.at(other).job.outcome;
-        if (outcome && serves(*outcome, sharing)) return outcome;
+        if (outcome && outcome->result.reusable && serves(*outcome, sharing)) return outcome;
     }
     return nullptr;
 }

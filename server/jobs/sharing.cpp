@@ -10,13 +10,12 @@ Sharing sharing_of(const api::JobRequest& request, std::string render_key, bool 
     const auto& fail_on = request.fail_on;
     return {.render_key = std::move(render_key),
             .takes_results = !no_cache,
-            .outlives_render = !request.settings.quality.time_s.has_value(),
             .fails_on_non_finite = std::find(fail_on.begin(), fail_on.end(), "non_finite") != fail_on.end()};
 }
 
 bool may_reuse_stored(const Sharing& sharing)
 {
-    return sharing.takes_results && sharing.outlives_render && !sharing.fails_on_non_finite;
+    return sharing.takes_results && !sharing.fails_on_non_finite;
 }
 
 } // namespace server

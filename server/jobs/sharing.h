@@ -9,8 +9,7 @@ namespace server {
 
 struct Sharing {
     std::string render_key;
-    bool takes_results = true;   // of others
-    bool outlives_render = true; // its own result is for jobs submitted later too (not where time decides)
+    bool takes_results = true;        // of others
     bool fails_on_non_finite = false; // takes only results without such samples
 };
 

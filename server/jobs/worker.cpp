@@ -17,7 +17,6 @@ namespace server {
 
 namespace {
 
-constexpr std::uint32_t kMostAttempts = 5;
 // One process owns the store, and a lease dies with it: no lease runs out while its worker lives.
 constexpr std::chrono::hours kLeaseTime{24 * 365};
 constexpr std::chrono::hours kLongWait{1};
@@ -105,7 +104,7 @@ void Worker::attempt(const Task& task)
 {
     const JobRecord& record = task.record;
     if (record.cancel_requested) return end(task, {.phase = LivePhase::canceled});
-    if (record.attempts > kMostAttempts)
+    if (record.attempts > kMaxAttempts)
         return end_failed(task, too_many_attempts_problem(record.id, record.attempts));
     auto read = api::read_job(record.spec.request_json, context_of_stored(rooms_.limits));
     if (auto* problem = std::get_if<api::ProblemDetails>(&read)) return end_failed(task, std::move(*problem));

@@ -1,0 +1,87 @@
+#include "server/app/app.h"
+
+#include "api/build_info.h"
+#include "server/http/http_server.h"
+#include "server/import/import_service.h"
+#include "server/jobs/job_service.h"
+#include "server/store/blob_store.h"
+#include "server/store/data_folder.h"
+#include "server/store/sqlite_store.h"
+
+#include <malloc.h>
+#include <ostream>
+#include <system_error>
+#include <unistd.h>
+
+namespace server {
+
+namespace {
+
+std::filesystem::path import_program_of(const ServiceOptions& options)
+{
+    const std::filesystem::path program =
+        options.import_program.empty()
+            ? std::filesystem::read_symlink("/proc/self/exe").parent_path() / "heliograph-import"
+            : options.import_program;
+    if (access(program.c_str(), X_OK) != 0)
+        throw std::system_error(errno,
+                                std::generic_category(),
+                                "the import program " + program.string() +
+                                    " cannot be run; --import-program tells where it is");
+    return program;
+}
+
+// glibc gives threads arenas of their own, up to eight a core; most of ours only wait.
+void keep_memory_small()
+{
+    constexpr int kArenas = 2;
+    mallopt(M_ARENA_MAX, kArenas);
+}
+
+std::string url_of(const std::string& host, int port)
+{
+    const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
+    return "http://" + name + ":" + std::to_string(port);
+}
+
+} // namespace
+
+int run_service(const ServiceOptions& options, const StopSignals& signals, std::ostream& out)
+{
+    keep_memory_small();
+    const Log log(options.log_level);
+    const std::filesystem::path import_program = import_program_of(options);
+    const DataFolder folder(options.data);
+    const std::unique_ptr<Store> store = open_sqlite_store(folder.path() / "jobs.sqlite");
+    BlobStore blobs(folder.path() / "blobs");
+    ImportService imports(import_program, blobs, options.limits);
+    JobService jobs(*store, blobs, imports, {options.limits, options.threads, log});
+    HttpServer http(jobs,
+                    *store,
+                    blobs,
+                    imports,
+                    log,
+                    {.host = options.host,
+                     .port = options.port,
+                     .health_port = options.health_port,
+                     .limits = options.limits});
+    jobs.start();
+    http.start();
+
+    const std::string url = url_of(options.host, http.port());
+    out << "heliographd ready on " << url << " (health " << url_of(options.host, http.health_port()) << ")"
+        << std::endl;
+    log.write(LogLevel::info,
+              "ready",
+              {{"url", url}, {"version", api::build_info().version}, {"commit", api::build_info().commit}});
+
+    const int signal = signals.wait();
+    signals.leave_on_next();
+    log.write(LogLevel::info, "stopping", {{"signal", std::int64_t{signal}}});
+    jobs.stop(); // first: whoever waits for a job gets an answer
+    http.stop();
+    log.write(LogLevel::info, "stopped");
+    return 0;
+}
+
+} // namespace server
