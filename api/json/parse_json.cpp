@@ -77,27 +77,28 @@ public:
 
     bool key(std::string& name) override
     {
-        if (open_.back().container->contains(name))
-            return refuse(
-                "duplicate_member", in_quotes(name) + " stands twice in one object: keep one of them", name);
+        const bool twice = open_.back().container->contains(name);
         open_.back().key = std::move(name);
+        in_member_ = true;
+        if (twice)
+            return refuse("duplicate_member",
+                          in_quotes(open_.back().key) + " stands twice in one object: keep one of them");
         return true;
     }
 
     bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override
     {
-        const std::string words = plain_words(error.what());
+        std::string words = plain_words(error.what());
         if (words.find("number overflow") != std::string::npos)
-            return refuse(
-                "not_finite", words + ": no such number, JSON numbers must stay below 1.8e308", next_name());
+            return refuse("not_finite", words + ": JSON numbers must stay below 1.8e308");
         if (words.find("UTF-8") != std::string::npos)
-            return refuse("not_utf8", words + "; send the text as UTF-8");
-        const bool literal = words.find("invalid literal") != std::string::npos;
-        return refuse(
-            "syntax",
-            literal ? words + "; a value is a number, a string in double quotes, true, false, null, an array "
-                              "or an object (there is no NaN and no Infinity in JSON)"
-                    : words);
+            return refuse("not_utf8",
+                          words.substr(0, words.find("; last read")) + ": send the text as UTF-8");
+        if (words.find("invalid literal") != std::string::npos)
+            words +=
+                "; a value is a number, a string in double quotes, true, false, null, an array or an object "
+                "(there is no NaN and no Infinity in JSON)";
+        return refuse("syntax", words);
     }
 
     Json take() { return std::move(root_); }
@@ -142,6 +143,7 @@ private:
                        raise_words("json_values"));
             return nullptr;
         }
+        in_member_ = false;
         if (open_.empty()) return &(root_ = std::move(value));
         Json& container = *open_.back().container;
         if (container.is_array()) {
@@ -151,24 +153,16 @@ private:
         return &(container[open_.back().key] = std::move(value));
     }
 
-    std::string next_name() const
-    {
-        return open_.empty() || open_.back().container->is_array() ? std::string() : open_.back().key;
-    }
-
-    // `member`: the name within the innermost object that the fault is about, if any.
-    bool refuse(const char* code, std::string detail, const std::string& member = {})
+    bool refuse(const char* code, std::string detail)
     {
         std::string pointer;
-        for (std::size_t i = 0; i < open_.size(); ++i) {
-            const bool innermost = i + 1 == open_.size();
+        for (const Open& open : open_) {
+            const bool innermost = &open == &open_.back();
+            if (open.container->is_array())
+                pointer = pointer_to(pointer, open.container->size() - (innermost ? 0 : 1));
+            else if (!innermost || in_member_)
+                pointer = pointer_to(pointer, open.key);
             if (pointer.size() > 1000) break; // as deep as anyone reads
-            if (open_[i].container->is_array())
-                pointer = pointer_to(pointer, open_[i].container->size() - (innermost ? 0 : 1));
-            else if (!innermost)
-                pointer = pointer_to(pointer, open_[i].key);
-            else if (!member.empty())
-                pointer = pointer_to(pointer, member);
         }
         fault_ = {std::move(pointer), code, std::move(detail)};
         return false;
@@ -178,6 +172,7 @@ private:
     Json root_;
     std::vector<Open> open_;
     std::uint64_t count_ = 0;
+    bool in_member_ = false; // its name is read, its value is not
     Problem fault_;
 };
 

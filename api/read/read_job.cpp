@@ -119,7 +119,7 @@ std::variant<JobRequest, ProblemDetails> read_job(std::string_view json, const R
     fields(root, job);
     root.finish();
 
-    check_not_empty(job.scene, state.faults);
+    if (std::get<Json>(parsed).is_object()) check_not_empty(job.scene, state.faults);
     check_spot_lights(job.scene, state.faults);
     check_image(job.settings.image, context.limits, state.faults);
     settle_quality(job.settings.quality, context.limits);
