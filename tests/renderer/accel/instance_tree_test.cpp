@@ -1,0 +1,344 @@
+#include "renderer/accel/instance_tree.h"
+#include "renderer/accel/prepared_mesh.h"
+#include "renderer/geometry/shapes.h"
+#include "tests/renderer/accel/random_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace {
+
+using namespace renderer;
+using random_scenes::Random;
+
+#ifdef HELIOGRAPH_SANITIZED
+constexpr int kThinning = 20;
+#else
+constexpr int kThinning = 1;
+#endif
+
+// Keeps meshes alive while instances point at them.
+class Objects {
+public:
+    void add(Mesh mesh, const Affine3& placed, bool visible_to_camera = true)
+    {
+        meshes_.push_back(prepare_mesh(std::move(mesh), BvhSplit::sah, pool_));
+        add(MeshGeometry{&mesh_of(*meshes_.back()), &bvh_of(*meshes_.back())}, placed, visible_to_camera);
+    }
+    void add(InstanceGeometry geometry, const Affine3& placed, bool visible_to_camera = true)
+    {
+        const auto instance = Instance::place(geometry, placed, visible_to_camera);
+        ASSERT_TRUE(instance);
+        instances_.push_back(*instance);
+    }
+    InstanceTree tree(BvhSplit split = BvhSplit::sah) { return {instances_, split, pool_}; }
+
+private:
+    ThreadPool pool_{1};
+    std::vector<std::shared_ptr<const PreparedMesh>> meshes_;
+    std::vector<Instance> instances_;
+};
+
+Affine3 random_placing(Random& random, double spread)
+{
+    const Vec3d s{
+        random.exponential(0.5), random.exponential(0.5), random.exponential(0.5)}; // mirrored half the time
+    return Affine3::translate(random.direction() * spread) *
+           Affine3::rotate_deg(random.uniform(0, 360), random.direction()) * Affine3::scale(s);
+}
+
+void add_random(Objects& objects, Random& random, double spread)
+{
+    const Affine3 placed = random_placing(random, spread);
+    switch (random.below(5)) {
+    case 0:
+        objects.add(unit_box(), placed);
+        break;
+    case 1:
+        objects.add(unit_rectangle(), placed);
+        break;
+    case 2:
+        objects.add(Sphere{random.uniform(0.2, 1)}, placed);
+        break;
+    case 3:
+        objects.add(Disk{random.uniform(0.2, 1)}, placed);
+        break;
+    default:
+        objects.add(random_scenes::soup(random, 20, 0.5, 0.5), placed);
+    }
+}
+
+TEST(InstanceTree, FindsTheSameHitAsBruteForce)
+{
+    Random random(1);
+    int hits = 0;
+    for (const int count : {1, 2, 3, 10, 100}) {
+        Objects objects;
+        for (int i = 0; i < count; ++i)
+            add_random(objects, random, 3);
+        const InstanceTree sah = objects.tree(), midpoint = objects.tree(BvhSplit::midpoint);
+        for (int i = 0; i < 5000 / kThinning; ++i) {
+            const Vec3d origin = random.direction() * random.uniform(0, 20);
+            Ray ray{origin, random.in_box({-3, -3, -3}, {3, 3, 3}) - origin};
+            if (random.below(4) == 0) ray.t_max = random.uniform(0, 1);
+            const auto expected = sah.closest_hit_brute_force(ray);
+            for (const InstanceTree* tree : {&sah, &midpoint}) {
+                const auto hit = tree->closest_hit(ray);
+                ASSERT_EQ(hit.has_value(), expected.has_value());
+                ASSERT_EQ(tree->any_hit(ray), expected.has_value());
+                if (!hit) continue;
+                ASSERT_EQ(hit->t, expected->t);
+                ASSERT_EQ(hit->instance, expected->instance);
+                ASSERT_EQ(hit->primitive, expected->primitive);
+                ASSERT_EQ(hit->point.position, expected->point.position);
+            }
+            hits += expected.has_value();
+        }
+    }
+    EXPECT_GT(hits, 5000 / kThinning);
+}
+
+TEST(InstanceTree, PrefersTheLowestInstanceAmongEquals)
+{
+    Objects objects;
+    const Affine3 placed = Affine3::rotate_deg(30, {1, 2, 3});
+    objects.add(Sphere{0.1}, Affine3::translate({9, 9, 9}));
+    for (int i = 0; i < 7; ++i)
+        objects.add(unit_box(), placed);
+    const InstanceTree tree = objects.tree();
+    Random random(2);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3d origin = random.direction() * 3.0;
+        const auto hit = tree.closest_hit(Ray{origin, random.direction() * 0.3 - origin});
+        ASSERT_TRUE(hit);
+        ASSERT_EQ(hit->instance, 1u);
+    }
+}
+
+TEST(InstanceTree, HidesObjectsFromTheCameraAlone)
+{
+    for (const int count : {1, 2}) {
+        Objects objects;
+        objects.add(unit_rectangle(), {}, false);
+        if (count == 2) objects.add(unit_rectangle(), Affine3::translate({0, 0, -1}));
+        const InstanceTree tree = objects.tree();
+        const Ray ray{{0.1, 0.1, 1}, {0, 0, -1}};
+        EXPECT_EQ(tree.closest_hit(ray, RayKind::other)->instance, 0u);
+        const auto seen = tree.closest_hit(ray, RayKind::camera);
+        EXPECT_EQ(seen.has_value(), count == 2);
+        EXPECT_EQ(tree.any_hit(ray, RayKind::camera), count == 2);
+        if (seen) {
+            EXPECT_EQ(seen->instance, 1u);
+        }
+        EXPECT_TRUE(tree.any_hit(ray));
+    }
+}
+
+TEST(InstanceTree, TellsPointNormalAndWeightsInTheWorld)
+{
+    Random random(29);
+    int hits = 0, mirrored = 0;
+    for (int i = 0; i < 3000; ++i) {
+        // Shears of up to 1e6, mirrored half the time.
+        Affine3 placed = random_placing(random, 3);
+        if (i % 3 == 0) {
+            Affine3 shear;
+            shear.rows[0].y = random.exponential(6);
+            placed = Affine3::translate(placed.translation) * shear *
+                     Affine3::scale({random.exponential(0.5), random.exponential(0.5), 1});
+        }
+        Objects objects;
+        objects.add(unit_box(), placed);
+        const InstanceTree tree = objects.tree();
+        const Vec3d center = placed.translation;
+        const Ray ray{center + random.direction() * 10.0, {}};
+        const auto hit = tree.closest_hit({ray.origin, center - ray.origin});
+        if (!hit) continue;
+        ++hits;
+        mirrored += placed.determinant() < 0;
+        const SurfacePoint& p = hit->point;
+        ASSERT_NEAR(length(p.normal), 1, 1e-12);
+        // The box is convex and symmetric: outside is away from its centre.
+        ASSERT_GT(dot(p.normal, p.position - center), 0) << i;
+        const Mesh box = unit_box();
+        const Triangle& t = box.triangles[hit->primitive];
+        const Vec3d a = placed.point(to_double(box.positions[t[0]])),
+                    b = placed.point(to_double(box.positions[t[1]])),
+                    c = placed.point(to_double(box.positions[t[2]]));
+        const double size = length(b - a) + length(c - a);
+        ASSERT_LE(std::abs(dot(p.normal, normalize(b - a))), 1e-9);
+        ASSERT_LE(std::abs(dot(p.normal, normalize(c - a))), 1e-9);
+        const Vec3d w = hit->barycentrics;
+        ASSERT_LE(length(a * w.x + b * w.y + c * w.z - p.position), 1e-9 * size);
+        ASSERT_LE(length(placed.point(hit->object_position) - p.position), 1e-9 * size);
+    }
+    EXPECT_GT(hits, 2000);
+    EXPECT_GT(mirrored, 500);
+}
+
+TEST(Instance, IsNotPlacedByATransformThatCollapsesIt)
+{
+    EXPECT_FALSE(Instance::place(Sphere{1}, Affine3::scale({1, 0, 1})));
+    Affine3 flat;
+    flat.rows[2] = flat.rows[1];
+    EXPECT_FALSE(Instance::place(Sphere{1}, flat));
+    EXPECT_TRUE(Instance::place(Sphere{1}, Affine3::scale({1, -1e-6, 1})));
+}
+
+// Leaves each hit in random directions, outwards and inwards. Convex shapes are not hit again from outside;
+// from inside the far side is hit, and not the near one.
+void expect_clean_departures(const InstanceTree& tree, Random& random, Vec3d center, double size, int rays)
+{
+    int departures = 0;
+    for (int i = 0; i < rays; ++i) {
+        const Vec3d origin = center + random.direction() * (size * 4);
+        const auto hit = tree.closest_hit({origin, center + random.direction() * (size * 0.4) - origin});
+        if (!hit) continue;
+        for (int k = 0; k < 10; ++k) {
+            const Vec3d direction = random.direction();
+            const Ray next{offset_origin(hit->point, direction), direction};
+            const bool outwards = dot(direction, hit->point.normal) > 0;
+            const auto again = tree.closest_hit(next);
+            if (outwards) {
+                ASSERT_FALSE(again) << "acne at size " << size << ", t " << again->t;
+                ASSERT_FALSE(tree.any_hit(next));
+            } else {
+                ASSERT_TRUE(again) << "a leak at size " << size;
+                // On the far side, where the ray leaves the shape.
+                ASSERT_GT(dot(direction, again->point.normal), 0);
+                ASSERT_LT(length(again->point.position - center), size * 2);
+            }
+            ++departures;
+        }
+    }
+    EXPECT_GT(departures, rays * 5);
+}
+
+TEST(SceneHit, CanBeLeftAtEveryScale)
+{
+    Random random(6);
+    for (const double size : {1e-6, 1e-3, 1., 1e3, 1e6})
+        for (int i = 0; i < 8; ++i) {
+            Objects objects;
+            const Affine3 turned =
+                Affine3::rotate_deg(i < 2 ? 0 : random.uniform(0, 360), random.direction());
+            // Some with a face through the world's origin, some far away, some around it.
+            const Vec3d at = i % 4 == 0   ? turned.vector({0, size * 0.5, 0})
+                             : i % 4 == 1 ? random.direction() * (size * 1e3)
+                                          : Vec3d{};
+            const Affine3 placed = Affine3::translate(at) * turned * Affine3::scale({size, size, size});
+            i % 2 == 0 ? objects.add(unit_box(), placed) : objects.add(Sphere{0.5}, placed);
+            expect_clean_departures(objects.tree(), random, at, size * 0.5, 600 / kThinning);
+        }
+}
+
+TEST(SceneHit, CanBeLeftAtTheOriginItself)
+{
+    // The point of the hit is exactly 0, where an offset of a few ulps of the coordinate vanishes.
+    for (const double size : {1e-6, 1., 1e6}) {
+        Objects objects;
+        objects.add(unit_box(), Affine3::translate({0, -size / 2, 0}) * Affine3::scale({size, size, size}));
+        const InstanceTree tree = objects.tree();
+        const auto hit = tree.closest_hit({{size, 2 * size, size / 3}, {-size, -2 * size, -size / 3}});
+        ASSERT_TRUE(hit);
+        ASSERT_LT(length(hit->point.position), 1e-12 * size);
+        Random random(61);
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3d direction = random.direction();
+            EXPECT_EQ(tree.any_hit({offset_origin(hit->point, direction), direction}), direction.y < 0);
+        }
+    }
+}
+
+// A millimetre on a plane of a thousand kilometres: neither shadows itself, nor does the plane reach up to
+// it.
+TEST(SceneHit, CanBeLeftInASceneOfManySizes)
+{
+    Random random(3);
+    Objects objects;
+    objects.add(random_scenes::grid(10, 1e6), {});
+    const double size = 1e-3;
+    const Vec3d at{0.3, size, 0.7};
+    objects.add(unit_box(),
+                Affine3::translate(at) * Affine3::rotate_deg(33, {1, 2, 3}) *
+                    Affine3::scale({size, size, size}));
+    const InstanceTree tree = objects.tree();
+    int shadow_rays = 0;
+    for (int i = 0; i < 100000 / kThinning; ++i) {
+        Vec3d from = random.direction() * 1e-2;
+        from.y = std::abs(from.y);
+        const Vec3d origin = at + from;
+        const auto hit = tree.closest_hit({origin, at + random.direction() * (0.4 * size) - origin});
+        if (!hit || hit->instance != 1) continue;
+        for (int k = 0; k < 10; ++k) {
+            Vec3d direction = random.direction();
+            direction.y = std::abs(direction.y); // the plane is below
+            if (dot(direction, hit->point.normal) <= 0) continue;
+            ++shadow_rays;
+            ASSERT_FALSE(tree.any_hit({offset_origin(hit->point, direction), direction})) << i;
+        }
+    }
+    EXPECT_GT(shadow_rays, 400000 / kThinning);
+}
+
+TEST(SceneHit, OfSpheresDisksAndRectanglesIsNeverHitAgain)
+{
+    Random random(5);
+    int departures = 0;
+    for (int i = 0; i < 1000 / kThinning; ++i) {
+        Objects objects;
+        const double radius = std::abs(random.exponential(4));
+        const Affine3 placed = random_placing(random, radius * 10);
+        switch (i % 3) {
+        case 0:
+            objects.add(Sphere{radius}, placed);
+            break;
+        case 1:
+            objects.add(Disk{radius}, placed);
+            break;
+        default:
+            objects.add(unit_rectangle(), placed * Affine3::scale({radius, radius, radius}));
+        }
+        const InstanceTree tree = objects.tree();
+        const Vec3d origin = placed.point(random.direction() * (3 * radius));
+        const Vec3d aim = placed.point(random.direction() * (0.2 * radius));
+        const auto hit = tree.closest_hit({origin, aim - origin});
+        if (!hit) continue;
+        for (int k = 0; k < 1000; ++k) {
+            const Vec3d direction = random.direction();
+            const bool outwards = dot(direction, hit->point.normal) > 0;
+            if (i % 3 == 0 && !outwards) continue; // a sphere is met from inside
+            ++departures;
+            ASSERT_FALSE(tree.any_hit({offset_origin(hit->point, direction), direction})) << i << ' ' << k;
+        }
+    }
+    EXPECT_GT(departures, 300000 / kThinning);
+}
+
+TEST(InstanceTree, OfNothingIsNeverHit)
+{
+    Objects none;
+    const InstanceTree empty = none.tree();
+    EXPECT_TRUE(empty.bounds().empty());
+    EXPECT_FALSE(empty.any_hit(Ray{{0, 0, 1}, {0, 0, -1}}));
+    EXPECT_FALSE(empty.closest_hit(Ray{{0, 0, 1}, {0, 0, -1}}));
+}
+
+TEST(InstanceTree, IsMissedByRaysThatAreNoRays)
+{
+    Objects objects;
+    objects.add(unit_box(), {});
+    objects.add(Sphere{1}, Affine3::translate({5, 0, 0}));
+    const InstanceTree tree = objects.tree();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(tree.any_hit(Ray{{0, 0, 3}, {0, 0, -1}}));
+    EXPECT_FALSE(tree.any_hit(Ray{{0, nan, 3}, {0, 0, -1}}));
+    EXPECT_FALSE(tree.any_hit(Ray{{0, 0, 3}, {0, 0, nan}}));
+    EXPECT_FALSE(tree.any_hit(Ray{{0, 0, 3}, {0, 0, 0}}));
+    EXPECT_FALSE(tree.closest_hit(Ray{{0, 0, 3}, {0, 0, -1}, nan}));
+}
+
+} // namespace
