@@ -1,0 +1,55 @@
+#include "renderer/accel/mesh_bvh.h"
+#include "renderer/parallel/thread_pool.h"
+#include "tests/bench/ray_engine.h"
+
+#include <optional>
+
+namespace bench {
+
+using namespace renderer;
+
+namespace {
+
+class HeliographEngine : public RayEngine {
+public:
+    HeliographEngine(const Mesh& mesh, BvhSplit split) : mesh_(mesh), split_(split) {}
+
+    std::string name() const override
+    {
+        return split_ == BvhSplit::sah ? "Heliograph" : "Heliograph, midpoint";
+    }
+    void build() override
+    {
+        bvh_.reset();
+        ThreadPool one(1);
+        bvh_ = MeshBvh::build(mesh_, {0, static_cast<std::uint32_t>(mesh_.triangles.size())}, split_, one);
+    }
+    std::uint64_t bytes() const override { return bvh_->size_bytes(); }
+    std::uint64_t vertex_bytes() const override
+    {
+        return mesh_.positions.size() * sizeof(Vec3f) + mesh_.triangles.size() * sizeof(Triangle);
+    }
+    std::uint64_t trace(const RaySet& set, std::span<const FloatRay> rays) const override
+    {
+        std::uint64_t hits = 0;
+        for (const FloatRay& r : rays) {
+            const Ray ray{to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
+            hits += set.occlusion ? bvh_->any_hit(ray) : bvh_->closest_hit(ray).has_value();
+        }
+        return hits;
+    }
+
+private:
+    const Mesh& mesh_;
+    BvhSplit split_;
+    std::optional<MeshBvh> bvh_;
+};
+
+} // namespace
+
+std::unique_ptr<RayEngine> make_heliograph_engine(const Mesh& mesh, BvhSplit split)
+{
+    return std::make_unique<HeliographEngine>(mesh, split);
+}
+
+} // namespace bench
