@@ -72,7 +72,7 @@ TEST(PictureFile, DecodesPngAsSrgb)
     EXPECT_EQ(image.pixels[0].r, 0.0f);
     EXPECT_EQ(image.pixels[255].g, 1.0f);
     EXPECT_NEAR(image.pixels[128].b, 0.2158605, 1e-6);
-    const renderer::Image8 again = renderer::develop(image, {.width_px = 256, .height_px = 1});
+    const renderer::Image8 again = renderer::develop(image, renderer::ImageSettings{});
     EXPECT_EQ(again.rgb, encoded.rgb);
 }
 
