@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <limits>
 
 namespace renderer {
 
@@ -84,8 +85,10 @@ private:
             const std::optional<std::size_t> left = split_at_midpoint(run, bounds);
             return left ? *left : split_at_median(run, bounds);
         }
-        const double leaf_limit = static_cast<double>(run.size()) - options_.node_cost;
-        const std::optional<SplitChoice> choice = split_by_sah(run, bounds, leaf_limit, leaf_allowed);
+        const auto leaf_tests = static_cast<double>((run.size() + options_.block - 1) / options_.block);
+        const double limit =
+            leaf_allowed ? leaf_tests - options_.node_cost : std::numeric_limits<double>::infinity();
+        const std::optional<SplitChoice> choice = split_by_sah(run, bounds, options_.block, limit);
         if (choice) return choice->left_count;
         return leaf_allowed ? 0 : split_at_median(run, bounds);
     }

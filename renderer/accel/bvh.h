@@ -57,7 +57,8 @@ struct Bvh {
 struct BvhOptions {
     BvhSplit split = BvhSplit::sah;
     std::uint32_t leaf_size = 4;
-    double node_cost = 1; // of visiting a pair, in primitive tests
+    std::uint32_t block = 1; // primitives that a leaf tests at once
+    double node_cost = 1;    // of visiting a pair, in tests of a block
 };
 
 // boxes[i] is the box of primitive i: finite and not empty. Fewer than 2^32 - 1 of them.

@@ -11,7 +11,9 @@
 // Threads    immutable after build; rays may be traced from any number of threads.
 #pragma once
 
-#include "renderer/accel/bvh.h"
+#include "renderer/accel/kernel_ray.h"
+#include "renderer/accel/triangle_block.h"
+#include "renderer/accel/wide_bvh.h"
 #include "renderer/description/settings.h"
 #include "renderer/geometry/mesh.h"
 #include "renderer/geometry/ray.h"
@@ -63,19 +65,14 @@ public:
     unsigned depth() const { return bvh_.depth; }
 
 private:
-    // A leaf's own copy of a triangle, so that a test reads one place.
-    struct LeafTriangle {
-        Vec3f a, b, c;
-        std::uint32_t primitive;
-    };
-    struct KernelRay;
-
-    static bool test(const KernelRay& ray, const LeafTriangle& triangle, std::optional<MeshHit>& best);
+    static bool
+    test(const KernelRay& ray, const TriangleBlock& block, unsigned lane, std::optional<MeshHit>& best);
     template <bool kAnyHit>
     std::optional<MeshHit> trace(const Ray& ray) const;
 
-    Bvh<float> bvh_; // in scaled coordinates, `order` emptied into leaves_
-    std::vector<LeafTriangle> leaves_;
+    WideBvh bvh_; // in scaled coordinates
+    std::vector<TriangleBlock>
+        leaves_; // the triangles' own copies of their corners, so that a test reads one place
     Bounds3f bounds_;
     float scale_ = 1; // power of two that brings coordinates near 1 where they are far from it
     std::uint64_t degenerate_ = 0;

@@ -64,9 +64,21 @@ struct Plane {
     double cost = std::numeric_limits<double>::infinity();
 };
 
+// What a side costs: its measure times the tests of its primitives.
+struct CostModel {
+    double inverse_extent; // unit of measure()
+    double whole;          // measure of the run's box
+    std::uint32_t block;   // primitives tested at once
+
+    template <typename T>
+    double side(const Bounds3<T>& box, std::uint32_t count) const
+    {
+        return measure(box, inverse_extent) * ((count + block - 1) / block) / whole;
+    }
+};
+
 template <typename T>
-void try_planes(
-    const std::array<Bin<T>, kBins>& bins, std::size_t axis, double inverse_extent, double whole, Plane& best)
+void try_planes(const std::array<Bin<T>, kBins>& bins, std::size_t axis, const CostModel& model, Plane& best)
 {
     std::array<double, kBins> right_cost{};
     Bounds3<T> box;
@@ -74,7 +86,7 @@ void try_planes(
     for (std::size_t i = kBins; i-- > 1;) {
         if (bins[i].count != 0) box.extend(bins[i].box);
         count += bins[i].count;
-        right_cost[i] = count == 0 ? -1 : measure(box, inverse_extent) * count;
+        right_cost[i] = count == 0 ? -1 : model.side(box, count);
     }
     box = {};
     count = 0;
@@ -82,7 +94,7 @@ void try_planes(
         if (bins[i - 1].count != 0) box.extend(bins[i - 1].box);
         count += bins[i - 1].count;
         if (count == 0 || right_cost[i] < 0) continue;
-        const double cost = (measure(box, inverse_extent) * count + right_cost[i]) / whole;
+        const double cost = model.side(box, count) + right_cost[i];
         if (cost < best.cost) best = {axis, i, cost};
     }
 }
@@ -101,10 +113,8 @@ RunBounds<T> bounds_of(std::span<const BuildItem<T>> run)
 }
 
 template <typename T>
-std::optional<SplitChoice> split_by_sah(std::span<BuildItem<T>> run,
-                                        const RunBounds<T>& bounds,
-                                        double leaf_cost_limit,
-                                        bool leaf_allowed)
+std::optional<SplitChoice>
+split_by_sah(std::span<BuildItem<T>> run, const RunBounds<T>& bounds, std::uint32_t block, double limit)
 {
     const std::array<Binning<T>, 3> binning{
         Binning<T>(bounds.centers, 0), Binning<T>(bounds.centers, 1), Binning<T>(bounds.centers, 2)};
@@ -121,12 +131,12 @@ std::optional<SplitChoice> split_by_sah(std::span<BuildItem<T>> run,
                         static_cast<double>(bounds.box.lower[longest]) * 0.5;
     if (!(half > 0)) return std::nullopt;
     const double inverse_extent = 0.5 / half;
-    const double whole = measure(bounds.box, inverse_extent);
+    const CostModel model{inverse_extent, measure(bounds.box, inverse_extent), block};
     Plane best;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (binning[axis].usable) try_planes(bins[axis], axis, inverse_extent, whole, best);
+        if (binning[axis].usable) try_planes(bins[axis], axis, model, best);
     if (!std::isfinite(best.cost)) return std::nullopt;
-    if (leaf_allowed && best.cost >= leaf_cost_limit) return SplitChoice{0, best.cost};
+    if (best.cost >= limit) return SplitChoice{0, best.cost};
     const Binning<T>& map = binning[best.axis];
     const auto middle = std::partition(
         run.begin(), run.end(), [&](const BuildItem<T>& item) { return map(item) < best.bin; });
@@ -159,9 +169,9 @@ std::size_t split_at_median(std::span<BuildItem<T>> run, const RunBounds<T>& bou
 template RunBounds<float> bounds_of(std::span<const BuildItem<float>>);
 template RunBounds<double> bounds_of(std::span<const BuildItem<double>>);
 template std::optional<SplitChoice>
-split_by_sah(std::span<BuildItem<float>>, const RunBounds<float>&, double, bool);
+split_by_sah(std::span<BuildItem<float>>, const RunBounds<float>&, std::uint32_t, double);
 template std::optional<SplitChoice>
-split_by_sah(std::span<BuildItem<double>>, const RunBounds<double>&, double, bool);
+split_by_sah(std::span<BuildItem<double>>, const RunBounds<double>&, std::uint32_t, double);
 template std::optional<std::size_t> split_at_midpoint(std::span<BuildItem<float>>, const RunBounds<float>&);
 template std::optional<std::size_t> split_at_midpoint(std::span<BuildItem<double>>, const RunBounds<double>&);
 template std::size_t split_at_median(std::span<BuildItem<float>>, const RunBounds<float>&);

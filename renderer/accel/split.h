@@ -34,16 +34,15 @@ RunBounds<T> bounds_of(std::span<const BuildItem<T>> run);
 
 struct SplitChoice {
     std::size_t left_count;
-    double cost; // in primitive tests, the pair's own visit not counted
+    double cost; // in tests of a block, the pair's own visit not counted
 };
 
-// Cuts by binned surface area heuristic: re-orders the run so that its first `left_count` items form the left
-// side. Nothing if no plane tells the items apart.
+// Cuts by binned surface area heuristic, primitives tested `block` at a time: re-orders the run so that its
+// first `left_count` items form the left side; not at all, and left_count 0, where the cost reaches `limit`.
+// Nothing if no plane tells the items apart.
 template <typename T>
-std::optional<SplitChoice> split_by_sah(std::span<BuildItem<T>> run,
-                                        const RunBounds<T>& bounds,
-                                        double leaf_cost_limit,
-                                        bool leaf_allowed);
+std::optional<SplitChoice>
+split_by_sah(std::span<BuildItem<T>> run, const RunBounds<T>& bounds, std::uint32_t block, double limit);
 
 // Cuts at the middle of the centres' longest axis. Nothing if one side stays empty.
 template <typename T>
