@@ -52,7 +52,7 @@ std::string write_job_list(const std::vector<JobView>& views, const std::string&
 std::string write_report(const renderer::RenderReport& report,
                          const std::string& job_id,
                          const std::string& render_key,
-                         const renderer::QualitySettings& requested = {});
+                         const renderer::QualitySettings& requested);
 
 // Asset answers.
 struct AssetInfo {

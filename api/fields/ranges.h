@@ -12,7 +12,7 @@ struct Range {
     bool without_min = false; // the end itself is not allowed
     bool without_max = false;
 
-    constexpr bool contains(double x) const
+    [[nodiscard]] constexpr bool contains(double x) const
     {
         return (without_min ? x > min : x >= min) && (without_max ? x < max : x <= max);
     }

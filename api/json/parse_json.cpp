@@ -61,7 +61,7 @@ std::string plain_words(std::string_view what)
 
 class BoundedBuilder final : public nlohmann::json_sax<Json> {
 public:
-    BoundedBuilder(const renderer::Limits& limits) : limits_(limits) {}
+    explicit BoundedBuilder(const renderer::Limits& limits) : limits_(limits) {}
 
     bool null() override { return put(nullptr); }
     bool boolean(bool value) override { return put(value); }
@@ -102,7 +102,7 @@ public:
     }
 
     Json take() { return std::move(root_); }
-    const Problem& fault() const { return fault_; }
+    [[nodiscard]] const Problem& fault() const { return fault_; }
 
 private:
     struct Open {

@@ -18,10 +18,10 @@ public:
     void add(std::string pointer, std::string code, std::string detail);
     void add(Problem fault);
 
-    bool empty() const { return faults_.empty(); }
-    std::size_t count() const { return faults_.size() + uncounted_; }
+    [[nodiscard]] bool empty() const { return faults_.empty(); }
+    [[nodiscard]] std::size_t count() const { return faults_.size() + uncounted_; }
     // Some fault is at `pointer` or below: rules that join several members then stay silent.
-    bool touches(std::string_view pointer) const;
+    [[nodiscard]] bool touches(std::string_view pointer) const;
 
     // In the order of their pointers, whatever the order of members in the request; leaves the list empty.
     std::vector<Problem> take();

@@ -166,8 +166,8 @@ private:
         ((i++ == index ? static_cast<void>(value.template emplace<Ts>()) : static_cast<void>(0)), ...);
     }
 
-    std::string at(std::string_view member) const;
-    std::string at(std::string_view member, std::size_t index) const;
+    [[nodiscard]] std::string at(std::string_view member) const;
+    [[nodiscard]] std::string at(std::string_view member, std::size_t index) const;
     void fault(std::string pointer, const char* code, std::string detail);
     void wrong_type(std::string pointer, const char* expected, const Json& got);
 

@@ -84,11 +84,11 @@ std::string in_quotes(std::string_view text)
 std::string listed(std::span<const std::string> words)
 {
     if (words.empty()) return "none";
-    constexpr std::size_t kMost = 20;
+    constexpr std::size_t most = 20;
     std::string list;
-    for (const std::string& word : words.first(std::min(words.size(), kMost)))
+    for (const std::string& word : words.first(std::min(words.size(), most)))
         list += (list.empty() ? "" : ", ") + shortened(word, 60);
-    return words.size() > kMost ? list + ", ..." : list;
+    return words.size() > most ? list + ", ..." : list;
 }
 
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string> words)

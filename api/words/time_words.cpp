@@ -9,9 +9,9 @@ namespace api {
 
 std::string rfc3339(std::int64_t unix_ms)
 {
-    constexpr std::int64_t kFirst = -62167219200000, kLast = 253402300799999; // of the years 0 and 9999
+    constexpr std::int64_t first = -62167219200000, last = 253402300799999; // of the years 0 and 9999
     const std::chrono::sys_time<std::chrono::milliseconds> time{
-        std::chrono::milliseconds(std::clamp(unix_ms, kFirst, kLast))};
+        std::chrono::milliseconds(std::clamp(unix_ms, first, last))};
     const auto day = std::chrono::floor<std::chrono::days>(time);
     const std::chrono::year_month_day date(day);
     const std::chrono::hh_mm_ss clock(time - day);

@@ -107,7 +107,7 @@ public:
 
 private:
     template <typename T>
-    Json written(const T& value) const
+    [[nodiscard]] Json written(const T& value) const
     {
         Json json = Json::object();
         WriteFields child(json, scene_);
@@ -115,7 +115,7 @@ private:
         return json;
     }
     template <typename... Ts>
-    Json written(const std::variant<Ts...>& value) const
+    [[nodiscard]] Json written(const std::variant<Ts...>& value) const
     {
         Json json = std::visit([this](const auto& alternative) { return written(alternative); }, value);
         json["type"] = name_of(words_for<std::variant<Ts...>>(), static_cast<int>(value.index()));

@@ -117,7 +117,9 @@ ExitCode render_command(const RenderOptions& options, std::stop_token stop)
     const std::vector<std::uint8_t> bytes = encode_picture(result, job.request, format);
     write_file(options.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!options.report.empty())
-        write_file(options.report, api::write_report(result.report, "local", render_key_of(job.request)));
+        write_file(options.report,
+                   api::write_report(
+                       result.report, "local", render_key_of(job.request), job.request.settings.quality));
     return ExitCode::ok;
 }
 

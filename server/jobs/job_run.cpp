@@ -59,7 +59,8 @@ JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, renderer:
     JobOutcome outcome;
     outcome.phase = LivePhase::succeeded;
     outcome.result.image_digest = digest_of(std::span<const std::byte>(*bytes));
-    outcome.result.report_json = api::write_report(rendered.report, run.id, run.render_key);
+    outcome.result.report_json =
+        api::write_report(rendered.report, run.id, run.render_key, run.request.settings.quality);
     api::JobRequest executed = run.request;
     executed.scene = std::move(scene.description);
     outcome.result.scene_json = api::write_job(executed);

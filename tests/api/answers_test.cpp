@@ -124,8 +124,8 @@ TEST(Report, StaysJsonWhereANumberIsNotFinite)
 {
     renderer::RenderReport report = a_report();
     report.numerics.coordinate_ratio = std::numeric_limits<double>::infinity();
-    EXPECT_TRUE(
-        checked(api::write_report(report, "job", "key"), "Report")["numerics"]["coordinate_ratio"].is_null());
+    EXPECT_TRUE(checked(api::write_report(report, "job", "key", {}), "Report")["numerics"]["coordinate_ratio"]
+                    .is_null());
 }
 
 TEST(AssetAnswer, NamesTheAsset)
