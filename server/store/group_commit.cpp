@@ -36,6 +36,12 @@ CommitCounts GroupCommit::counts() const
     return counts_;
 }
 
+std::size_t GroupCommit::waiting() const
+{
+    const std::lock_guard lock(mutex_);
+    return waiting_.size();
+}
+
 void GroupCommit::write_batches(std::stop_token stop)
 {
     std::unique_lock lock(mutex_);

@@ -14,6 +14,7 @@
 #include "server/store/sqlite_store.h"
 
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -37,6 +38,7 @@ public:
 
     void run(Durability durability, const Work& work);
     CommitCounts counts() const;
+    std::size_t waiting() const; // requests that the next transaction will carry
 
 private:
     struct Request {

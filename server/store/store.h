@@ -109,10 +109,10 @@ struct Submitted {
 
 struct ListQuery {
     Tenant tenant;
-    std::optional<StoredState> state;
-    std::optional<std::pair<std::string, std::string>> label; // name, value
+    std::optional<StoredState> state{};
+    std::optional<std::pair<std::string, std::string>> label{}; // name, value
     std::uint32_t limit = 50;
-    std::string cursor; // empty: from the newest
+    std::string cursor{}; // empty: from the newest
 };
 
 struct ListPage {

@@ -1,0 +1,286 @@
+// What only a store on disk can show: it outlives its process, refuses what is damaged, commits in groups.
+#include "server/store/group_commit.h"
+#include "server/store/sqlite_connection.h"
+#include "server/store/sqlite_store.h"
+#include "tests/server/store/store_fixture.h"
+#include "tests/support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <future>
+#include <set>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace {
+
+using server::open_sqlite_store;
+using server::SqliteConnection;
+using server::StoredState;
+using server::StoreError;
+using server::SubmitStatus;
+using tests::a_request;
+using tests::a_result;
+using tests::kTtl;
+using tests::TempFolder;
+
+std::string refusal_of(const std::filesystem::path& file)
+{
+    try {
+        open_sqlite_store(file);
+        return "(opened)";
+    } catch (const StoreError& error) {
+        return error.what();
+    }
+}
+
+TEST(SqliteStore, KeepsEverythingOverARestartAndQueuesWhatWasRunning)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "jobs.sqlite";
+    auto keyed = a_request("keyed", 99);
+    keyed.idempotency_key = "key-1";
+    std::string done, running, canceling, queued;
+    server::Lease lost;
+    {
+        const auto store = open_sqlite_store(file);
+        done = store->submit(keyed).job.id;
+        store->complete(store->claim("worker", 1, kTtl).at(0), a_result("keyed"), 5);
+        running = store->submit(a_request("running", 90)).job.id;
+        canceling = store->submit(a_request("canceling", 80)).job.id;
+        queued = store->submit(a_request("queued", 70)).job.id;
+        lost = store->claim("worker", 2, kTtl).at(0);
+        store->cancel("alice", canceling, 6);
+    }
+    const auto store = open_sqlite_store(file);
+    EXPECT_EQ(store->get("alice", done)->result, a_result("keyed"));
+    EXPECT_EQ(store->get("alice", done)->spec.request_json, keyed.spec.request_json);
+    EXPECT_EQ(store->get("alice", done)->spec.labels, keyed.spec.labels);
+    EXPECT_EQ(store->submit(keyed).status, SubmitStatus::replayed);
+    EXPECT_EQ(store->get("alice", running)->state, StoredState::queued);
+    EXPECT_EQ(store->get("alice", running)->attempts, 1U) << "an attempt that a restart ended counts";
+    EXPECT_EQ(store->get("alice", canceling)->state, StoredState::canceled);
+    EXPECT_TRUE(store->get("alice", canceling)->finished_ms);
+    EXPECT_FALSE(store->complete(lost, a_result("zombie"), 7)) << "every lease is void";
+
+    const auto leases = store->claim("worker", 9, kTtl);
+    ASSERT_EQ(leases.size(), 2U);
+    EXPECT_EQ(leases[0].job, running);
+    EXPECT_GT(leases[0].epoch, lost.epoch);
+    EXPECT_EQ(leases[1].job, queued);
+}
+
+// In a child: submits from four threads, writes an id to `out` once it is acknowledged, works a little, never
+// ends.
+[[noreturn]] void submit_for_ever(const std::filesystem::path& file, int out)
+{
+    const auto store = open_sqlite_store(file);
+    const auto submit = [&] {
+        for (;;) {
+            const std::string id = store->submit(a_request("job")).job.id + '\n';
+            if (::write(out, id.data(), id.size()) < 0) _exit(1);
+        }
+    };
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back(submit);
+    for (;;)
+        for (const auto& lease : store->claim("worker", 1, kTtl))
+            store->release({lease});
+}
+
+// Kills a child that submits after `count` acknowledgements; all that it gave.
+std::set<std::string> acknowledged_before_kill(const std::filesystem::path& file, int count)
+{
+    int ends[2];
+    if (pipe(ends) != 0) throw std::runtime_error("pipe");
+    const pid_t child = fork();
+    if (child == 0) submit_for_ever(file, ends[1]);
+    close(ends[1]);
+    std::set<std::string> ids;
+    FILE* lines = fdopen(ends[0], "r");
+    char line[64];
+    while (fgets(line, sizeof line, lines) != nullptr) {
+        const std::string text = line;
+        if (text.size() == 33) ids.insert(text.substr(0, 32));
+        if (static_cast<int>(ids.size()) == count) kill(child, SIGKILL);
+    }
+    fclose(lines);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+    return ids;
+}
+
+TEST(SqliteStore, LosesNothingAcknowledgedWhenItsProcessIsKilled)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "jobs.sqlite";
+    std::set<std::string> acknowledged;
+    for (int round = 0; round < 20; ++round) {
+        acknowledged.merge(acknowledged_before_kill(file, 1 + 7 * round));
+        const auto store = open_sqlite_store(file);
+        EXPECT_EQ(store->depth().leased, 0U);
+        for (const std::string& id : acknowledged) {
+            const auto job = store->get("alice", id);
+            ASSERT_TRUE(job) << "lost " << id << " in round " << round;
+            EXPECT_EQ(job->spec.labels.size(), 2U) << "half a job";
+            EXPECT_EQ(job->spec.asset_digests.size(), 2U) << "half a job";
+        }
+    }
+    EXPECT_GE(acknowledged.size(), 20U + 7U * 190U);
+}
+
+TEST(SqliteStore, RefusesADamagedFileByName)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "jobs.sqlite";
+    {
+        const auto store = open_sqlite_store(file);
+        for (int i = 0; i < 200; ++i)
+            store->submit(a_request("job " + std::to_string(i)));
+    }
+    const auto size = std::filesystem::file_size(file);
+    ASSERT_GT(size, 10U * 4096U);
+    {
+        std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+        for (std::size_t page = 1; page < size / 4096; ++page) {
+            bytes.seekp(static_cast<std::streamoff>(page * 4096));
+            bytes.write("\x0D\xFF\xFF\xFF\xFF\xFF\xFF\xFF", 8);
+        }
+    }
+    EXPECT_NE(refusal_of(file).find(file.string()), std::string::npos) << refusal_of(file);
+    EXPECT_NE(refusal_of(file).find("restore a backup"), std::string::npos) << refusal_of(file);
+
+    std::filesystem::resize_file(file, size / 2);
+    EXPECT_NE(refusal_of(file).find(file.string()), std::string::npos) << refusal_of(file);
+    std::ofstream(file, std::ios::trunc) << "this is a text and not a database, whatever its name may say";
+    EXPECT_NE(refusal_of(file).find("not a database"), std::string::npos) << refusal_of(file);
+    EXPECT_NE(refusal_of(folder.path() / "none" / "jobs.sqlite").find("none/jobs.sqlite"), std::string::npos);
+}
+
+TEST(SqliteStore, RefusesANewerVersionAndAnotherProgramsDatabase)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "jobs.sqlite";
+    open_sqlite_store(file);
+    SqliteConnection(file, SqliteConnection::Open::existing).execute("PRAGMA user_version=2");
+    EXPECT_NE(refusal_of(file).find("newer program"), std::string::npos) << refusal_of(file);
+
+    const auto other = folder.path() / "other.sqlite";
+    SqliteConnection(other, SqliteConnection::Open::create).execute("CREATE TABLE mine(a)");
+    EXPECT_NE(refusal_of(other).find("another program"), std::string::npos) << refusal_of(other);
+    EXPECT_EQ(SqliteConnection(other, SqliteConnection::Open::existing).integer("SELECT count(*) FROM mine"),
+              0);
+}
+
+// The writer is held while sixteen threads submit: when it is let go, they are in one transaction.
+TEST(GroupCommit, FoldsWhatWaitsIntoOneTransaction)
+{
+    const TempFolder folder;
+    auto db = std::make_unique<SqliteConnection>(folder.path() / "db", SqliteConnection::Open::create);
+    db->execute("PRAGMA journal_mode=WAL; CREATE TABLE t(n INTEGER)");
+    server::GroupCommit writer(std::move(db));
+    const auto insert = [](SqliteConnection& c) { c.execute("INSERT INTO t VALUES(1)"); };
+
+    std::promise<void> entered, let_go;
+    std::thread holder([&] {
+        writer.run(server::Durability::synced, [&](SqliteConnection&) {
+            entered.set_value();
+            let_go.get_future().wait();
+        });
+    });
+    entered.get_future().wait();
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 16; ++t)
+        threads.emplace_back([&] { writer.run(server::Durability::synced, insert); });
+    while (writer.waiting() < 16)
+        std::this_thread::yield();
+    let_go.set_value();
+    holder.join();
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(writer.counts().requests, 17U);
+    EXPECT_EQ(writer.counts().transactions, 2U);
+}
+
+TEST(GroupCommit, UndoesAFailedRequestAndKeepsItsNeighbours)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "db";
+    auto db = std::make_unique<SqliteConnection>(file, SqliteConnection::Open::create);
+    db->execute("PRAGMA journal_mode=WAL; CREATE TABLE t(n INTEGER UNIQUE)");
+    server::GroupCommit writer(std::move(db));
+
+    std::promise<void> entered, let_go;
+    std::thread holder([&] {
+        writer.run(server::Durability::written, [&](SqliteConnection&) {
+            entered.set_value();
+            let_go.get_future().wait();
+        });
+    });
+    entered.get_future().wait();
+    std::atomic<int> refused{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 6; ++t)
+        threads.emplace_back([&, t] {
+            try {
+                writer.run(server::Durability::synced, [&](SqliteConnection& c) {
+                    c.prepare("INSERT INTO t VALUES(?1)").bind(std::int64_t{t}).run();
+                    if (t == 1) throw std::runtime_error("for its own reason");
+                    if (t == 2) c.execute("INSERT INTO t VALUES(2)"); // not unique
+                });
+            } catch (const std::exception&) {
+                ++refused;
+            }
+        });
+    while (writer.waiting() < 6)
+        std::this_thread::yield();
+    let_go.set_value();
+    holder.join();
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(refused, 2);
+    EXPECT_EQ(writer.counts().transactions, 2U);
+    SqliteConnection reader(file, SqliteConnection::Open::existing);
+    EXPECT_EQ(reader.integer("SELECT count(*) FROM t"), 4);
+    EXPECT_EQ(reader.integer("SELECT count(*) FROM t WHERE n IN (1, 2)"), 0);
+}
+
+TEST(SqliteStore, CommitsFewerTimesThanItAcknowledges)
+{
+    const TempFolder folder;
+    const auto store = open_sqlite_store(folder.path() / "jobs.sqlite");
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 16; ++t)
+        threads.emplace_back([&] {
+            for (int i = 0; i < 25; ++i)
+                store->submit(a_request("job"));
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(store->commit_counts().requests, 400U);
+    EXPECT_LT(store->commit_counts().transactions, 400U);
+    EXPECT_EQ(store->depth().queued, 400U);
+}
+
+TEST(SqliteStore, EmptiesItsLogAsItGrowsAndAtTheEnd)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "jobs.sqlite";
+    {
+        const auto store = open_sqlite_store(file);
+        auto request = a_request("large");
+        request.spec.request_json = std::string(1 << 20, 'x');
+        for (int i = 0; i < 30; ++i)
+            store->submit(request);
+        EXPECT_LT(std::filesystem::file_size(folder.path() / "jobs.sqlite-wal"), 16U << 20);
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "jobs.sqlite-wal"));
+    EXPECT_EQ(open_sqlite_store(file)->depth().queued, 30U);
+}
+
+} // namespace
