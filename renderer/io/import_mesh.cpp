@@ -95,7 +95,7 @@ ImportResult import_mesh(std::string_view name,
                          const OpenFile& open,
                          const Limits& limits)
 {
-    if (bytes.empty()) return ImportFault{"truncated", "the file is empty"};
+    if (bytes.empty()) return ImportFault{"no_triangles", "the file is empty"};
     CompanionFiles files(open);
     Format format = format_of_content(text_of(bytes));
     if (format == Format::unknown) format = format_of_name(name, text_of(bytes));

@@ -43,7 +43,7 @@ bool JsonScan::enter()
     return true;
 }
 
-bool JsonScan::raw_string(std::string_view& out)
+bool JsonScan::string(std::string_view& out)
 {
     if (!take('"')) return false;
     const std::size_t begin = at_;
@@ -57,21 +57,13 @@ bool JsonScan::raw_string(std::string_view& out)
     return true;
 }
 
-bool JsonScan::string(std::string& out)
-{
-    std::string_view raw;
-    if (!raw_string(raw)) return false;
-    out = raw;
-    return true;
-}
-
 bool JsonScan::object(const std::function<bool(std::string_view)>& member)
 {
     if (!take('{') || !enter()) return false;
     if (!peek('}')) {
         do {
             std::string_view key;
-            if (!raw_string(key) || !take(':')) return false;
+            if (!string(key) || !take(':')) return false;
             if (key.find('\\') != key.npos) key = {};
             if (!member(key)) return false;
         } while (take(','));
@@ -153,7 +145,7 @@ bool JsonScan::skip()
         return word("null");
     case '"': {
         std::string_view ignored;
-        return raw_string(ignored);
+        return string(ignored);
     }
     default:
         return number();

@@ -1,15 +1,13 @@
-// JsonScan: walks JSON text without building anything, for looking at a hostile document before a library
-// does.
+// JsonScan: walks JSON text without building anything, to look at a hostile document before a library does.
 //
 // Errors  everything returns false after the first fault; fault_offset() says where. Strict RFC 8259, nesting
-// bounded. Cost    linear, no allocation but for the strings that are asked for.
+//         bounded.
+// Cost    linear, no allocation.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
-#include <string>
 #include <string_view>
 
 namespace renderer {
@@ -22,10 +20,10 @@ public:
     // consume the value by one of these functions and return what that returned.
     bool object(const std::function<bool(std::string_view key)>& member);
     bool array(const std::function<bool()>& element);
-    bool string(std::string& out);  // without unescaping: as it stands between the quotes
-    bool index(std::uint32_t& out); // a whole number that is not negative
-    bool skip();                    // any value
-    bool at_end();                  // nothing but blanks left
+    bool string(std::string_view& out); // as it stands between the quotes, escapes and all
+    bool index(std::uint32_t& out);     // a whole number that is not negative
+    bool skip();                        // any value
+    bool at_end();                      // nothing but blanks left
 
     std::size_t fault_offset() const { return at_; }
     bool too_deep() const { return too_deep_; }
@@ -34,7 +32,6 @@ private:
     void blanks();
     bool take(char c);
     bool peek(char c);
-    bool raw_string(std::string_view& out);
     bool number();
     bool word(std::string_view expected);
     bool enter();

@@ -1,7 +1,6 @@
 // PlyValues: the numbers after a PLY header, one after the other, whatever their encoding.
 //
-// Errors  next() gives nothing where the data ends or (ASCII) where a word is no number; ended() tells them
-// apart.
+// Errors  next() gives nothing where the data ends or (ASCII) where a word is no number; ended() tells which.
 #pragma once
 
 #include "renderer/io/ply_header.h"

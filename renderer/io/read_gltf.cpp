@@ -1,7 +1,9 @@
 #include "renderer/io/read_gltf.h"
 
 #include "renderer/io/flatten_scene.h"
+#include "renderer/io/gltf_buffers.h"
 #include "renderer/io/gltf_outline.h"
+#include "renderer/io/gltf_tree.h"
 #include "renderer/io/import_bounds.h"
 #include "renderer/io/text.h"
 
@@ -33,13 +35,16 @@ public:
         : name_(std::move(name)), bytes_(bytes), files_(files), missing_(missing)
     {
     }
-    bool Exists(const char* file) const override { return file == name_ || files_.open(file).has_value(); }
+    bool Exists(const char* file) const override
+    {
+        return file == name_ || open_uri(files_, file).has_value();
+    }
     char getOsSeparator() const override { return '/'; }
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {
         if (std::string_view(mode).find('w') != std::string_view::npos) return nullptr;
         if (file == name_) return stream(bytes_);
-        if (const auto bytes = files_.open(file)) return stream(*bytes);
+        if (const auto bytes = open_uri(files_, file)) return stream(*bytes);
         missing_ = file;
         return nullptr;
     }
@@ -68,11 +73,16 @@ void keep_only_gltf(Assimp::Importer& importer)
     }
 }
 
-std::optional<ImportFault> check_json(std::string_view json)
+std::optional<ImportFault> check(std::string_view json,
+                                 std::optional<std::span<const std::byte>> binary,
+                                 CompanionFiles& files,
+                                 const Limits& limits)
 {
-    auto outline = read_gltf_outline(json);
-    if (auto* fault = std::get_if<ImportFault>(&outline)) return std::move(*fault);
-    return check_gltf_outline(std::get<GltfOutline>(outline));
+    auto read = read_gltf_outline(json);
+    if (auto* fault = std::get_if<ImportFault>(&read)) return std::move(*fault);
+    const auto& outline = std::get<GltfOutline>(read);
+    if (auto bad = check_gltf_tree(outline)) return bad;
+    return check_gltf_buffers(outline, binary, files, limits);
 }
 
 ImportFault assimp_fault(const Assimp::Importer& importer, const std::string& missing)
@@ -116,19 +126,21 @@ std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t offset)
 
 ImportResult read_gltf(std::span<const std::byte> bytes, CompanionFiles& files, const Limits& limits)
 {
-    if (auto bad = check_json(text_of(bytes))) return std::move(*bad);
+    if (auto bad = check(text_of(bytes), std::nullopt, files, limits)) return std::move(*bad);
     return read("gltf", bytes, files, limits);
 }
 
 // 12 bytes of header, then chunks of (length, type, bytes): the first is the JSON.
 ImportResult read_glb(std::span<const std::byte> bytes, CompanionFiles& files, const Limits& limits)
 {
-    constexpr std::uint32_t kJson = 0x4e4f534a;
+    constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
     if (bytes.size() < 20)
         return ImportFault{"truncated",
                            "a GLB has at least 20 bytes, this file has " + std::to_string(bytes.size())};
-    if (word_at(bytes, 4) != 2)
-        return ImportFault{"unsupported", "GLB version " + std::to_string(word_at(bytes, 4)) + "; 2 is read"};
+    const std::uint32_t version = word_at(bytes, 4);
+    if (version != 2)
+        return ImportFault{version == 1 ? "unsupported" : "malformed",
+                           "byte 4: GLB version " + std::to_string(version) + "; 2 is read"};
     const std::uint64_t length = word_at(bytes, 8), json_length = word_at(bytes, 12);
     if (length != bytes.size())
         return ImportFault{bytes.size() < length ? "truncated" : "malformed",
@@ -140,13 +152,17 @@ ImportResult read_glb(std::span<const std::byte> bytes, CompanionFiles& files, c
         return ImportFault{"malformed",
                            "byte 12: the GLB's JSON chunk of " + std::to_string(json_length) +
                                " bytes passes its end"};
+    std::optional<std::span<const std::byte>> binary;
     for (std::size_t at = 20 + json_length; at < bytes.size();) {
         if (bytes.size() - at < 8 || word_at(bytes, at) > bytes.size() - at - 8)
             return ImportFault{"malformed",
                                "byte " + std::to_string(at) + ": a chunk of the GLB passes its end"};
-        at += 8 + word_at(bytes, at);
+        const std::size_t size = word_at(bytes, at);
+        if (!binary && word_at(bytes, at + 4) == kBinary) binary = bytes.subspan(at + 8, size);
+        at += 8 + size;
     }
-    if (auto bad = check_json(text_of(bytes.subspan(20, json_length)))) return std::move(*bad);
+    if (auto bad = check(text_of(bytes.subspan(20, json_length)), binary, files, limits))
+        return std::move(*bad);
     return read("glb", bytes, files, limits);
 }
 

@@ -1,8 +1,7 @@
-// read_mtl: the materials of a Wavefront MTL file, as far as they are modelled (Kd, Ks, Ns, names of
-// textures).
+// read_mtl: the materials of a Wavefront MTL file, as far as they are modelled (Kd, Ks, Ns, texture names).
 //
-// Errors   none: a line that cannot be read is told in `notes` and leaves the default. Colours are brought
-// into [0, 1].
+// Errors  none: a line that cannot be read is told in `notes` and leaves the default. Colours are brought
+//         into [0, 1].
 #pragma once
 
 #include "renderer/geometry/mesh.h"

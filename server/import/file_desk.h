@@ -3,8 +3,7 @@
 // that are needed are opened, and it is the service, not the importer, that knows which.
 //
 // Errors  the importer's side treats a closed desk as "there is none"; the service's side answers what it
-// does not
-//         understand the same way, and closes after kMostQuestions.
+//         does not understand the same way, and closes after kMostQuestions.
 #pragma once
 
 #include "server/import/owned_fd.h"

@@ -2,9 +2,8 @@
 // the arrays as they stand in memory, then the texts. It never leaves the machine, so it has this machine's
 // byte order.
 //
-// Errors  read_flat() takes nothing on trust: sizes, counts, ranges, finiteness and UTF-8 are checked, and
-// bytes that are
-//         not exactly what write_flat() makes give a failure "import_crashed". The bytes must not change
+// Errors  read_flat() takes nothing on trust: sizes, counts, ranges, finiteness and UTF-8 are checked; bytes
+//         that are not just what write_flat() makes give a failure "import_crashed". They must not change
 //         meanwhile.
 // Cost    one copy of the arrays.
 #pragma once

@@ -3,14 +3,12 @@
 // hostile. Prepared meshes are kept in memory, least recently used first out, by bytes.
 //
 // Key      digest and extension of the main file, digests of every file that it asked for (or that there was
-// none),
-//          importer version, split. Failures that would come again are remembered too; time and memory are
-//          not such.
+//          none), importer version, split. Failures that would come again are remembered too; time and
+//          memory are not such.
 // Bytes    every blob is verified against its digest before what came of it is told or kept: the importer
-// reads the
-//          file itself while this process verifies it.
-// Threads  every function may be called from any thread; the same mesh asked for twice at once is imported
-// once. Errors   the client's doing (a broken mesh, one too large for the limits) is a value; StoreError and
+//          reads the file itself while this process verifies it.
+// Threads  every function may be called from any thread; a mesh asked for twice at once is imported once.
+// Errors   the client's doing (a broken mesh, one too large for the limits) is a value; StoreError and
 //          std::system_error (no child can be started, or it cannot lock itself down) are the world's.
 #pragma once
 

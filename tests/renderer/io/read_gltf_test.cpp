@@ -1,0 +1,145 @@
+#include "renderer/io/gltf_buffers.h"
+#include "renderer/io/gltf_outline.h"
+#include "renderer/io/gltf_tree.h"
+#include "renderer/io/import_mesh.h"
+#include "tests/support/temp_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace {
+
+using renderer::ImportedMesh;
+using renderer::ImportFault;
+
+renderer::ImportResult import_text(const std::string& name, const std::string& text)
+{
+    return renderer::import_mesh(name, std::as_bytes(std::span(text)), {}, {});
+}
+
+std::string fault_code(const std::string& json)
+{
+    const auto outline = renderer::read_gltf_outline(json);
+    if (const auto* fault = std::get_if<ImportFault>(&outline)) return fault->code;
+    const auto fault = renderer::check_gltf_tree(std::get<renderer::GltfOutline>(outline));
+    return fault ? fault->code : "none";
+}
+
+std::string with_nodes(const std::string& nodes, const std::string& roots = "0")
+{
+    return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes + "]}";
+}
+
+TEST(ReadGltf, PlacesEveryNodeWithinItsParentAndKeepsSubtreesTogether)
+{
+    const auto result =
+        import_text("parts.glb", tests::bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/parts.glb"));
+    ASSERT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
+    const renderer::Mesh& mesh = std::get<ImportedMesh>(result).mesh;
+    std::vector<std::string> names;
+    for (const auto& part : mesh.parts)
+        names.push_back(part.name);
+    EXPECT_THAT(names, testing::IsSupersetOf({"base", "arm", "hand", "tip"}));
+    const auto part = [&](const std::string& name) {
+        return *std::find_if(
+            mesh.parts.begin(), mesh.parts.end(), [&](const auto& p) { return p.name == name; });
+    };
+    EXPECT_EQ(part("base").triangle_count, 12u);
+    EXPECT_EQ(part("tip").triangle_count, 12u);
+    EXPECT_EQ(part("arm").triangle_count, part("hand").triangle_count);
+    EXPECT_EQ(part("hand").first_triangle + part("hand").triangle_count, part("tip").first_triangle + 12);
+    // tip: a box of 1 x 0.2 x 1 turned by 90 degrees about z, 2 up in hand, which is halved and at (0.5, 1,
+    // 0).
+    renderer::Bounds3f bounds;
+    for (std::uint32_t t = part("tip").first_triangle; t < part("tip").first_triangle + 12; ++t)
+        for (const auto vertex : mesh.triangles[t])
+            bounds.extend(mesh.positions[vertex]);
+    EXPECT_NEAR(bounds.lower.x, 0.45, 1e-6);
+    EXPECT_NEAR(bounds.upper.x, 0.55, 1e-6);
+    EXPECT_NEAR(bounds.lower.y, 1.75, 1e-6);
+    EXPECT_NEAR(bounds.upper.y, 2.25, 1e-6);
+    EXPECT_NEAR(bounds.lower.z, -0.25, 1e-6);
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    for (const auto& n : mesh.normals)
+        EXPECT_NEAR(length(n), 1, 1e-5);
+}
+
+TEST(ReadGltf, TakesBaseColoursAsDiffuse)
+{
+    const auto result =
+        import_text("parts.glb", tests::bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/parts.glb"));
+    ASSERT_TRUE(std::holds_alternative<ImportedMesh>(result));
+    const renderer::Mesh& mesh = std::get<ImportedMesh>(result).mesh;
+    ASSERT_GE(mesh.materials.size(), 2u);
+    EXPECT_EQ(mesh.materials[0].diffuse, (renderer::Rgb{0.5f, 0.5f, 0.5f}));
+    EXPECT_EQ(mesh.materials[1].diffuse, (renderer::Rgb{0.2f, 0.5f, 0.8f}));
+    ASSERT_EQ(mesh.triangle_materials.size(), mesh.triangles.size());
+}
+
+// One triangle in a data: URI, by a node of negative scale: the winding must turn with it.
+TEST(ReadGltf, TurnsTheWindingOfMirroredNodesAndReadsDataUris)
+{
+    const std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+        "nodes":[{"mesh":0,"scale":[-1,1,1]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+    const auto result = import_text("t.gltf", json);
+    ASSERT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
+    const renderer::Mesh& mesh = std::get<ImportedMesh>(result).mesh;
+    ASSERT_EQ(mesh.triangles.size(), 1u);
+    const auto corner = [&](std::size_t i) { return to_double(mesh.positions[mesh.triangles[0][i]]); };
+    EXPECT_EQ(corner(0), (renderer::Vec3d{0, 0, 0}));
+    EXPECT_EQ(cross(corner(1) - corner(0), corner(2) - corner(0)), (renderer::Vec3d{0, 0, 1}));
+    EXPECT_TRUE(mesh.normals.empty());
+    EXPECT_TRUE(mesh.materials.empty());
+}
+
+TEST(GltfOutline, RefusesNodesThatAreNoTrees)
+{
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[1,2]},{},{})")), "none");
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[1,1]},{})")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[2]},{"children":[2]},{})", "0,1")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[1]},{"children":[0]})")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes(R"({},{"children":[1]})")), "over_limit");
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[7]})")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes("{}", "0,0")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes("{}", "3")), "malformed");
+}
+
+TEST(GltfOutline, RefusesChainsThatAreTooDeep)
+{
+    const auto chain = [](int nodes) {
+        std::string text;
+        for (int i = 1; i < nodes; ++i)
+            text += "{\"children\":[" + std::to_string(i) + "]},";
+        return with_nodes(text + "{}");
+    };
+    EXPECT_EQ(fault_code(chain(256)), "none");
+    EXPECT_EQ(fault_code(chain(257)), "over_limit");
+    EXPECT_EQ(fault_code(chain(100'000)), "over_limit");
+}
+
+TEST(GltfOutline, RefusesWhatAssimpMightUnderstandOtherwise)
+{
+    EXPECT_EQ(fault_code(R"({"asset":{"version":"2.0"},"nodes":[],"nodes":[{"children":[0]}]})"),
+              "malformed");
+    EXPECT_EQ(fault_code(R"({"asset":{"version":"2.0"},"n\u006fdes":[{"children":[0]}]})"), "malformed");
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[1],"children":[1]},{})")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[1.0]},{})")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes(R"({"children":[-1]},{})")), "malformed");
+    EXPECT_EQ(fault_code(with_nodes("{}") + "x"), "malformed");
+    EXPECT_EQ(fault_code(R"({"asset":{"version":"1.0"}})"), "unsupported");
+    EXPECT_EQ(
+        fault_code(R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]})"),
+        "unsupported");
+    EXPECT_EQ(fault_code(R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_unlit"]})"),
+              "none");
+    EXPECT_EQ(fault_code("{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(100'000, '[')),
+              "malformed");
+    EXPECT_EQ(fault_code(R"({"asset":{"version":"2.0")"), "truncated");
+}
+
+} // namespace

@@ -1,0 +1,189 @@
+#include "renderer/io/read_obj.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+namespace {
+
+using renderer::ImportedMesh;
+using renderer::ImportFault;
+using renderer::Mesh;
+
+using Files = std::map<std::string, std::string, std::less<>>;
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+renderer::ImportResult read(const std::string& text, const Files& files = {})
+{
+    const renderer::OpenFile open = [&](std::string_view name) -> std::optional<std::span<const std::byte>> {
+        const auto file = files.find(name);
+        if (file == files.end()) return std::nullopt;
+        return std::as_bytes(std::span(file->second));
+    };
+    renderer::CompanionFiles companions(open);
+    return renderer::read_obj(text, companions, {});
+}
+
+ImportedMesh mesh_of(const std::string& text, const Files& files = {})
+{
+    auto result = read(text, files);
+    if (const auto* fault = std::get_if<ImportFault>(&result))
+        ADD_FAILURE() << fault->code << ": " << fault->detail;
+    return std::holds_alternative<ImportedMesh>(result) ? std::get<ImportedMesh>(std::move(result))
+                                                        : ImportedMesh();
+}
+
+ImportFault fault_of(const std::string& text)
+{
+    auto result = read(text);
+    return std::holds_alternative<ImportFault>(result) ? std::get<ImportFault>(std::move(result))
+                                                       : ImportFault{"none", ""};
+}
+
+double area(const Mesh& mesh)
+{
+    double sum = 0;
+    for (const auto& t : mesh.triangles) {
+        const auto a = to_double(mesh.positions[t[0]]);
+        sum += length(cross(to_double(mesh.positions[t[1]]) - a, to_double(mesh.positions[t[2]]) - a)) / 2;
+    }
+    return sum;
+}
+
+TEST(ReadObj, KeepsOneVertexForEveryUsedCornerAndDropsTheRest)
+{
+    const Mesh mesh = mesh_of("v 9 9 9\n" + kSquare + "f 2 3 4\nf 2 4 5\n").mesh;
+    EXPECT_EQ(mesh.positions.size(), 4u);
+    EXPECT_EQ(mesh.triangles, (std::vector<renderer::Triangle>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_TRUE(mesh.normals.empty());
+    EXPECT_TRUE(mesh.uvs.empty());
+}
+
+TEST(ReadObj, TriangulatesPolygonsInsideTheirOutline)
+{
+    // An L of area 3 whose fan from the first corner would cover more.
+    const std::string corners = "v 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\n";
+    for (const std::string face : {"f 1 2 3 4 5 6\n", "f 4 5 6 1 2 3\n", "f 6 5 4 3 2 1\n"}) {
+        const Mesh mesh = mesh_of(corners + face).mesh;
+        EXPECT_EQ(mesh.triangles.size(), 4u);
+        EXPECT_NEAR(area(mesh), 3, 1e-12) << face;
+    }
+}
+
+TEST(ReadObj, CountsNegativeIndicesFromTheLastVertex)
+{
+    EXPECT_EQ(mesh_of(kSquare + "f -4 -3 -2\nv 5 5 5\n").mesh.positions[2], (renderer::Vec3f{1, 1, 0}));
+}
+
+TEST(ReadObj, AllowsFacesBeforeTheirVertices)
+{
+    EXPECT_EQ(mesh_of("f 1 2 3\n" + kSquare).mesh.triangles.size(), 1u);
+}
+
+TEST(ReadObj, KeepsCornersApartWhoseNormalsDiffer)
+{
+    const Mesh mesh = mesh_of(kSquare + "vn 0 0 2\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1//2 3//1 4//1\n").mesh;
+    EXPECT_EQ(mesh.positions.size(), 5u);
+    ASSERT_EQ(mesh.normals.size(), 5u);
+    EXPECT_EQ(mesh.normals[0], (renderer::Vec3f{0, 0, 1})); // brought to length 1
+}
+
+TEST(ReadObj, GivesFacesWithoutNormalsTheirOwnWhereOthersHaveThem)
+{
+    const Mesh mesh =
+        mesh_of(kSquare + "v 0 0 1\nvn 0 0 1\nvn 0 0 0\nf 1//1 2//1 3//1\nf 1 5 4\nf 1//2 3//2 4//2\n").mesh;
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    for (const std::uint32_t vertex : mesh.triangles[1])
+        EXPECT_EQ(mesh.normals[vertex], (renderer::Vec3f{-1, 0, 0}));
+    for (const std::uint32_t vertex : mesh.triangles[2])
+        EXPECT_EQ(mesh.normals[vertex], (renderer::Vec3f{0, 0, 1}));
+}
+
+TEST(ReadObj, LeavesOutLinesAndPointsAndSaysSo)
+{
+    const ImportedMesh result = mesh_of(kSquare + "l 1 2 3\np 1\nf 1 2\nf 1 2 3\n");
+    EXPECT_EQ(result.mesh.triangles.size(), 1u);
+    EXPECT_THAT(result.notes, testing::ElementsAre(testing::HasSubstr("3 lines and points")));
+}
+
+TEST(ReadObj, TakesMaterialsFromItsMtl)
+{
+    const Files files{{"my mats.mtl",
+                       "newmtl red\nKd 1 0 0\nKs 0.5\nNs 32\nmap_Kd -s 2 2 -o 0.5 wood grain.png\nnewmtl "
+                       "blue\nKd 0 0 7\n"}};
+    const ImportedMesh result =
+        mesh_of("mtllib my mats.mtl\n" + kSquare +
+                    "f 1 2 3\nusemtl blue\nf 1 3 4\nusemtl red\nf 1 2 4\nusemtl gone\nf 2 3 4\n",
+                files);
+    ASSERT_EQ(result.mesh.materials.size(), 3u);
+    EXPECT_EQ(result.mesh.materials[0].diffuse, (renderer::Rgb{1, 0, 0}));
+    EXPECT_EQ(result.mesh.materials[0].specular, (renderer::Rgb{0.5f, 0.5f, 0.5f}));
+    EXPECT_EQ(result.mesh.materials[0].shininess, 32);
+    EXPECT_THAT(result.mesh.materials[0].textures, testing::ElementsAre("wood grain.png"));
+    EXPECT_EQ(result.mesh.materials[1].diffuse, (renderer::Rgb{0, 0, 1})); // within [0, 1]
+    EXPECT_THAT(result.mesh.triangle_materials, testing::ElementsAre(2, 1, 0, 2));
+    EXPECT_THAT(result.notes, testing::ElementsAre(testing::HasSubstr("\"gone\"")));
+}
+
+TEST(ReadObj, SaysWhenItsMtlIsMissing)
+{
+    const ImportedMesh result = mesh_of("mtllib gone.mtl\nusemtl red\n" + kSquare + "f 1 2 3\n");
+    EXPECT_TRUE(result.mesh.materials.empty());
+    EXPECT_TRUE(result.mesh.triangle_materials.empty());
+    EXPECT_THAT(result.notes, testing::ElementsAre(testing::HasSubstr("\"gone.mtl\" is not among")));
+}
+
+TEST(ReadObj, MakesEveryObjectOneRunOfTriangles)
+{
+    const Mesh mesh =
+        mesh_of(kSquare + "o a\nf 1 2 3\no b\nf 2 3 4\ng ignored\nf 3 4 1\no a\nf 4 1 2\n").mesh;
+    ASSERT_EQ(mesh.parts.size(), 2u);
+    EXPECT_EQ(mesh.parts[0].name, "a");
+    EXPECT_EQ(mesh.parts[0].first_triangle, 0u);
+    EXPECT_EQ(mesh.parts[0].triangle_count, 2u);
+    EXPECT_EQ(mesh.parts[1].name, "b");
+    EXPECT_EQ(mesh.parts[1].first_triangle, 2u);
+    EXPECT_EQ(mesh.parts[1].triangle_count, 2u);
+}
+
+TEST(ReadObj, TakesGroupsAsPartsWhereThereAreNoObjects)
+{
+    const Mesh mesh = mesh_of(kSquare + "f 1 2 3\ng left arm\nf 2 3 4\n").mesh;
+    ASSERT_EQ(mesh.parts.size(), 1u);
+    EXPECT_EQ(mesh.parts[0].name, "left arm");
+    EXPECT_EQ(mesh.parts[0].first_triangle, 1u);
+}
+
+TEST(ReadObj, JoinsLinesThatEndInABackslashAndReadsDosLineEnds)
+{
+    EXPECT_EQ(mesh_of("v 0 0 0\r\nv 1 0 0\r\nv 1 1 \\\r\n0\r\nf 1 \\\r\n2 3\r\n").mesh.triangles.size(), 1u);
+}
+
+TEST(ReadObj, NamesTheLineOfWhatIsWrong)
+{
+    EXPECT_EQ(fault_of(kSquare + "f 1 2 9\n").code, "index_out_of_range");
+    EXPECT_THAT(fault_of(kSquare + "f 1 2 9\n").detail, testing::HasSubstr("line 5"));
+    EXPECT_THAT(fault_of(kSquare + "f 1 2 -9\n").detail, testing::HasSubstr("line 5"));
+    EXPECT_EQ(fault_of(kSquare + "f 1 2 0\n").code, "index_out_of_range");
+    EXPECT_EQ(fault_of(kSquare + "f 1 2 x\n").code, "malformed");
+    EXPECT_EQ(fault_of(kSquare + "f 1/1/1/1 2 3\n").code, "malformed");
+    EXPECT_EQ(fault_of("v 0 nan 0\n").code, "non_finite");
+    EXPECT_THAT(fault_of("v 0 0 0\nv 0 nan 0\n").detail, testing::HasSubstr("vertex 2"));
+    EXPECT_EQ(fault_of("v 0 1e39 0\n").code, "non_finite");
+    EXPECT_EQ(fault_of("v 0 0\nv 0 0 0\n").code, "malformed");
+    EXPECT_EQ(fault_of(kSquare + "v 0 0").code, "truncated");
+    EXPECT_EQ(fault_of(kSquare + "f 1 2").code, "truncated");
+}
+
+TEST(ReadObj, ReadsNumbersTooSmallForAFloatAsZero)
+{
+    const Mesh mesh = mesh_of("v 1e-60 -1e-400 1e-40\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").mesh;
+    EXPECT_EQ(mesh.positions[0].x, 0);
+    EXPECT_EQ(mesh.positions[0].y, 0);
+    EXPECT_GT(mesh.positions[0].z, 0); // subnormal, but there
+}
+
+} // namespace
