@@ -1,5 +1,6 @@
 #include "server/jobs/job_run.h"
 
+#include "api/provenance.h"
 #include "renderer/accel/prepared_mesh.h"
 #include "renderer/film/develop.h"
 #include "renderer/plan/plan.h"
@@ -50,9 +51,12 @@ double aspect_of(const renderer::ImageSettings& image)
 
 JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, renderer::RenderResult rendered)
 {
-    const renderer::ImageSettings& image = run.request.settings.image;
+    std::vector<renderer::PngText> texts;
+    for (auto& [keyword, text] :
+         api::provenance_of(run.request, run.render_key, rendered.report.accuracy.samples))
+        texts.push_back({keyword, text});
     const std::vector<std::uint8_t> png =
-        renderer::encode_png(renderer::develop(rendered.film.mean(), image));
+        renderer::encode_png(renderer::develop(rendered.film.mean(), run.request.settings.image), texts);
     auto bytes = std::make_shared<std::vector<std::byte>>(png.size());
     std::memcpy(bytes->data(), png.data(), png.size());
 

@@ -1,0 +1,38 @@
+#!/bin/sh
+# The five curl lines of the contract do what they say.
+# shellcheck source-path=SCRIPTDIR disable=SC2119
+. "$(dirname "$0")/service.sh"
+start_service
+cd "$WORK"
+cp "$ASSETS/knot.obj" .
+mesh=$(upload knot.obj)
+jq -n --arg mesh "$mesh" '{scene: {objects: [{mesh: "knot.obj"}]}, files: {"knot.obj": $mesh},
+    image: {width: 96, height: 64}, quality: {samples: 4}}' >scene.json
+
+curl --fail -sS --json @scene.json -H 'Prefer: wait=30' -H 'Accept: image/png' -o json.png "$U/v1/jobs"
+is_png json.png
+
+jq 'del(.files)' scene.json >bare.json
+curl --fail -sS -F scene=@bare.json -F knot.obj=@knot.obj -H 'Prefer: wait=30' -H 'Accept: image/png' -o multipart.png "$U/v1/jobs"
+cmp json.png multipart.png || fail "multipart gave another picture"
+
+id=$(curl -s --json @scene.json "$U/v1/jobs" | jq -r .id)
+curl --fail -sS --retry 99 --retry-delay 1 -o fetched.png "$U/v1/jobs/$id/image"
+cmp json.png fetched.png || fail "the fetched picture is another"
+
+equal 200 "$(curl -sS -o /dev/null -w '%{http_code}' -T knot.obj "$U/v1/assets/sha256:$(sha256sum knot.obj | cut -d' ' -f1)")" "a second upload"
+
+# The classic slip, and with a body far over 8 KiB.
+equal 202 "$(curl -sS -o /dev/null -w '%{http_code}' -d @scene.json "$U/v1/jobs")" "form content type"
+jq '.labels = ([range(200) | {key: "label_\(.)", value: "a value that takes room, number \(.)"}] | from_entries)' scene.json >large.json
+[ "$(wc -c <large.json)" -gt 9000 ] || fail "the large scene is small"
+code=$(curl -sS -o answer -w '%{http_code}' -d @large.json "$U/v1/jobs")
+case $code in
+202) ;;
+422) jq -e '.errors[0].pointer | startswith("/labels")' answer >/dev/null || fail "large form body: $(cat answer)" ;;
+*) fail "large form body: $code $(cat answer)" ;;
+esac
+
+# Polling with an ETag costs nothing.
+etag=$(curl -sS -D - -o /dev/null "$U/v1/jobs/$id" | tr -d '\r' | awk 'tolower($1) == "etag:" {print $2}')
+equal 304 "$(curl -sS -o /dev/null -w '%{http_code}' -H "If-None-Match: $etag" "$U/v1/jobs/$id")" "a poll with the ETag"
