@@ -206,7 +206,7 @@ void add_without_triangles(Files& files, const AssetMesh& sphere)
 {
     AssetMesh bare = sphere;
     bare.triangles.clear();
-    files.push_back({"empty.obj", "no_triangles,empty,unknown_format", "no bytes", ""});
+    files.push_back({"empty.obj", "truncated,no_triangles,empty,unknown_format", "no bytes", ""});
     files.push_back({"empty.ply", "truncated,no_triangles,empty,unknown_format,malformed", "no bytes", ""});
     files.push_back({"empty.stl", "truncated,no_triangles,empty,unknown_format,malformed", "no bytes", ""});
     files.push_back({"empty.glb", "truncated,no_triangles,empty,unknown_format,malformed", "no bytes", ""});
