@@ -82,3 +82,21 @@ TEST(Exp2, IsExactAtIntegersAndWithinTwoUlpBetween)
         ASSERT_LE(ulps(renderer::exp2(x), std::exp2(static_cast<long double>(x))), 2) << x;
     }
 }
+
+TEST(Log2, IsWithinThreeUlpAndExactAtPowersOfTwo)
+{
+    for (int exponent = -1074; exponent <= 1023; ++exponent) {
+        ASSERT_EQ(renderer::log2(std::ldexp(1.0, exponent)), exponent);
+    }
+    for (std::uint64_t i = 1; i < 200000; ++i) {
+        const double x = std::ldexp(0.5 + spread(i) / 2, static_cast<int>(i % 400) - 200);
+        const long double want = std::log2(static_cast<long double>(x));
+        ASSERT_LE(ulps(renderer::log2(x), want), 3) << x;
+        const double near_one = 1 + (spread(i) - 0.5) / 8;
+        ASSERT_NEAR(renderer::log2(near_one), static_cast<double>(std::log2(static_cast<long double>(near_one))), 1e-16);
+    }
+    EXPECT_EQ(renderer::log2(0), -INFINITY);
+    EXPECT_EQ(renderer::log2(INFINITY), INFINITY);
+    EXPECT_TRUE(std::isnan(renderer::log2(-1)));
+    EXPECT_TRUE(std::isnan(renderer::log2(NAN)));
+}

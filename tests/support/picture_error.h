@@ -1,0 +1,25 @@
+// Pictures compared as api.md defines it; and, where a comparison fails, left on disk to be looked at.
+#pragma once
+
+#include "renderer/film/film.h"
+
+#include <optional>
+#include <string>
+
+namespace tests {
+
+// A colour PFM, little-endian; nothing if the file is not there or not one.
+std::optional<renderer::LinearImage> read_pfm(const std::string& path);
+
+// sqrt(mean over pixels and channels of (x - ref)^2 / (ref^2 + e)), e = (0.2 mean of ref)^2.
+double relative_rmse(const renderer::LinearImage& image, const renderer::LinearImage& reference);
+
+renderer::Rgb mean_of(const renderer::LinearImage& image);
+
+// Writes NAME.png, NAME_reference.png and NAME_error.png (black: equal, white: 10 % or more of the mean off)
+// to the system's folder for temporary files, and says where.
+std::string leave_for_inspection(const std::string& name,
+                                 const renderer::LinearImage& image,
+                                 const renderer::LinearImage& reference);
+
+} // namespace tests
