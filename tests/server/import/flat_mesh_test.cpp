@@ -1,0 +1,175 @@
+#include "renderer/geometry/validate_mesh.h"
+#include "server/import/flat_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+namespace {
+
+using server::ImportedAsset;
+using server::ImportFailure;
+using server::ImportOutcome;
+using Bytes = std::vector<std::byte>;
+
+ImportedAsset tetrahedron()
+{
+    ImportedAsset asset;
+    asset.format = "obj";
+    asset.notes = {"a note", "zwölf Boxkämpfer"};
+    renderer::Mesh& mesh = asset.mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    mesh.triangle_materials = {0, 1, 1, 0};
+    mesh.materials = {{"red", {1, 0, 0}, {0, 0, 0}, 1, {"red.png", "bump.png"}},
+                      {"shiny", {}, {1, 1, 1}, 99, {}}};
+    mesh.parts = {{"base", 0, 1}, {"sides", 1, 3}};
+    return asset;
+}
+
+Bytes written(const ImportOutcome& outcome)
+{
+    Bytes bytes;
+    write_flat(outcome,
+               [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
+    return bytes;
+}
+
+std::string code_of(const ImportOutcome& outcome)
+{
+    const auto* failure = std::get_if<ImportFailure>(&outcome);
+    return failure ? failure->code : "ok";
+}
+
+// The count at `offset` of the head: 16 positions, 24 normals, 32 uvs, 40 triangles, 48 materials, 56 text
+// bytes.
+Bytes with_count(Bytes bytes, std::size_t offset, std::uint64_t count)
+{
+    std::memcpy(bytes.data() + offset, &count, sizeof count);
+    return bytes;
+}
+
+TEST(FlatMesh, GivesBackWhatWasWritten)
+{
+    const ImportOutcome back = server::read_flat(written(tetrahedron()), {});
+    ASSERT_EQ(code_of(back), "ok");
+    const auto& asset = std::get<ImportedAsset>(back);
+    const ImportedAsset before = tetrahedron();
+    EXPECT_EQ(asset.format, before.format);
+    EXPECT_EQ(asset.notes, before.notes);
+    EXPECT_EQ(asset.mesh.positions, before.mesh.positions);
+    EXPECT_EQ(asset.mesh.normals, before.mesh.normals);
+    EXPECT_EQ(asset.mesh.uvs, before.mesh.uvs);
+    EXPECT_EQ(asset.mesh.triangles, before.mesh.triangles);
+    EXPECT_EQ(asset.mesh.triangle_materials, before.mesh.triangle_materials);
+    ASSERT_EQ(asset.mesh.materials.size(), 2u);
+    EXPECT_EQ(asset.mesh.materials[0].textures, before.mesh.materials[0].textures);
+    EXPECT_EQ(asset.mesh.materials[1].specular, before.mesh.materials[1].specular);
+    ASSERT_EQ(asset.mesh.parts.size(), 2u);
+    EXPECT_EQ(asset.mesh.parts[1].name, "sides");
+    EXPECT_EQ(asset.mesh.parts[1].triangle_count, 3u);
+
+    const ImportFailure failure{"truncated", "line 7: the file ends"};
+    EXPECT_EQ(std::get<ImportFailure>(server::read_flat(written(failure), {})), failure);
+}
+
+TEST(FlatMesh, RefusesEveryTruncationAndEveryTail)
+{
+    for (const Bytes& whole : {written(tetrahedron()), written(ImportFailure{"malformed", "why"})}) {
+        for (std::size_t size = 0; size < whole.size(); ++size)
+            ASSERT_EQ(code_of(server::read_flat(std::span(whole).first(size), {})), "import_crashed") << size;
+        Bytes longer = whole;
+        longer.push_back(std::byte{0});
+        EXPECT_EQ(code_of(server::read_flat(longer, {})), "import_crashed");
+    }
+}
+
+TEST(FlatMesh, GivesASoundMeshOrAFailureWhateverBitsAreFlipped)
+{
+    const Bytes whole = written(tetrahedron());
+    for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+        Bytes bytes = whole;
+        bytes[bit / 8] ^= std::byte(1u << (bit % 8));
+        const ImportOutcome outcome = server::read_flat(bytes, {});
+        if (const auto* asset = std::get_if<ImportedAsset>(&outcome)) {
+            ASSERT_FALSE(renderer::validate_mesh(asset->mesh)) << bit;
+            for (const std::string& note : asset->notes)
+                ASSERT_TRUE(server::is_utf8(note)) << bit;
+        }
+    }
+}
+
+TEST(FlatMesh, SurvivesRandomBytes)
+{
+    std::uint64_t state = 88172645463325252u;
+    const auto random = [&] {
+        state ^= state << 13;
+        state ^= state >> 7;
+        return state ^= state << 17;
+    };
+    const Bytes whole = written(tetrahedron());
+    for (int round = 0; round < 20'000; ++round) {
+        Bytes bytes = whole;
+        for (std::uint64_t edits = 1 + random() % 8; edits-- > 0;)
+            bytes[random() % bytes.size()] = std::byte(random() & 0xff);
+        const ImportOutcome outcome = server::read_flat(bytes, {});
+        if (const auto* asset = std::get_if<ImportedAsset>(&outcome)) {
+            ASSERT_FALSE(renderer::validate_mesh(asset->mesh));
+        }
+    }
+}
+
+TEST(FlatMesh, RefusesCountsThatOverflow)
+{
+    const Bytes whole = written(tetrahedron());
+    for (std::size_t offset = 16; offset < 64; offset += 8)
+        for (const std::uint64_t count :
+             {~0ull, 1ull << 63, (1ull << 62) + 1, 0x1555555555555556ull, 1ull << 32})
+            ASSERT_EQ(code_of(server::read_flat(with_count(whole, offset, count), {})), "import_crashed")
+                << offset;
+}
+
+TEST(FlatMesh, KeepsTheTriangleLimitItself)
+{
+    renderer::Limits limits;
+    limits.triangles = 3;
+    EXPECT_EQ(code_of(server::read_flat(written(tetrahedron()), limits)), "over_limit");
+}
+
+TEST(FlatMesh, RefusesTextsThatAreNotUtf8)
+{
+    for (const char* text : {"\xff", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\x80"}) {
+        EXPECT_FALSE(server::is_utf8(text));
+        ImportedAsset asset = tetrahedron();
+        asset.mesh.materials[1].name = text;
+        EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+    }
+    for (const char* text : {"", "a", "\xc3\xb6", "\xe2\x82\xac", "\xf0\x9f\x8c\x9e"})
+        EXPECT_TRUE(server::is_utf8(text));
+}
+
+TEST(FlatMesh, RefusesMeshesThatTheRendererWouldNotTake)
+{
+    ImportedAsset asset = tetrahedron();
+    asset.mesh.triangles[2][1] = 4;
+    EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+    asset = tetrahedron();
+    asset.mesh.parts[1].triangle_count = 4;
+    EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+    asset = tetrahedron();
+    asset.mesh.positions[0].x = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+}
+
+TEST(FlatMesh, TellsWhatIsTooLargeBeforeItIsWritten)
+{
+    renderer::Limits limits;
+    EXPECT_EQ(code_of(within_flat_bounds(tetrahedron(), limits)), "ok");
+    limits.import_output_bytes = 100;
+    EXPECT_EQ(code_of(within_flat_bounds(tetrahedron(), limits)), "over_limit");
+}
+
+} // namespace
