@@ -1,28 +1,16 @@
 #include "server/store/mem_store.h"
 
 #include "server/store/lease_table.h"
+#include "server/store/mem_jobs.h"
 #include "server/store/store_rules.h"
 #include "server/store/work_bell.h"
 
-#include <algorithm>
-#include <map>
 #include <mutex>
 #include <set>
-#include <tuple>
-#include <unordered_map>
 
 namespace server {
 
 namespace {
-
-struct IdempotencyKey {
-    std::string body_digest;
-    std::uint64_t sequence = 0;
-    std::int64_t created_ms = 0;
-};
-
-// The order of claims: highest priority first, then oldest.
-using WaitingKey = std::pair<int, std::uint64_t>; // minus priority, sequence
 
 JobRecord without_long_texts(JobRecord job)
 {
@@ -57,125 +45,63 @@ public:
     void wait_work(std::chrono::milliseconds timeout, std::stop_token stop) override;
 
 private:
-    struct Job {
-        std::uint64_t sequence = 0;
-        JobRecord record;
-    };
-    Job* find(const JobId& id);
-    Job* find(const Tenant& tenant, const JobId& id);
-    Job* find_leased(const Lease& lease); // nothing: fenced
-    const Job* find_reusable(const Tenant& tenant, const std::string& render_key) const;
-    void enter(Job& job, StoredState state);
-    void finish(Job& job, StoredState state, std::int64_t now_ms);
+    using Job = MemJobs::Job;
     void give_back(Job& job);
-    void forget(std::uint64_t sequence);
     bool matches(const Job& job, const ListQuery& query) const;
 
     StoreClock clock_;
     LeaseTable leases_;
     WorkBell bell_;
-    std::mutex mutex_; // of everything below
-    std::uint64_t last_sequence_ = 0;
-    std::map<std::uint64_t, Job> jobs_; // by sequence
-    std::unordered_map<JobId, std::uint64_t> sequence_of_;
-    std::set<WaitingKey> waiting_;
-    std::map<std::pair<Tenant, std::string>, IdempotencyKey> keys_;
+    std::mutex mutex_; // of jobs_
+    MemJobs jobs_{bell_};
 };
-
-MemStore::Job* MemStore::find(const JobId& id)
-{
-    const auto found = sequence_of_.find(id);
-    return found == sequence_of_.end() ? nullptr : &jobs_.at(found->second);
-}
-
-MemStore::Job* MemStore::find(const Tenant& tenant, const JobId& id)
-{
-    Job* job = find(id);
-    return job != nullptr && job->record.tenant == tenant ? job : nullptr;
-}
-
-MemStore::Job* MemStore::find_leased(const Lease& lease)
-{
-    Job* job = find(lease.job);
-    const bool owned =
-        job != nullptr && job->record.state == StoredState::leased && job->record.epoch == lease.epoch;
-    return owned ? job : nullptr;
-}
-
-const MemStore::Job* MemStore::find_reusable(const Tenant& tenant, const std::string& render_key) const
-{
-    if (render_key.empty()) return nullptr;
-    for (auto at = jobs_.rbegin(); at != jobs_.rend(); ++at) {
-        const JobRecord& record = at->second.record;
-        if (record.tenant == tenant && record.state == StoredState::succeeded &&
-            record.spec.render_key == render_key && record.result->reusable)
-            return &at->second;
-    }
-    return nullptr;
-}
-
-void MemStore::enter(Job& job, StoredState state)
-{
-    const WaitingKey key{-job.record.spec.priority, job.sequence};
-    waiting_.erase(key);
-    job.record.state = state;
-    if (state != StoredState::queued) return;
-    waiting_.insert(key);
-    job.record.started_ms.reset();
-    bell_.ring();
-}
-
-void MemStore::finish(Job& job, StoredState state, std::int64_t now_ms)
-{
-    enter(job, state);
-    job.record.finished_ms = now_ms;
-}
 
 void MemStore::give_back(Job& job)
 {
     const StoredState state = state_when_given_back(job.record.cancel_requested);
     if (is_final(state))
-        finish(job, state, clock_.wall_ms());
+        jobs_.finish(job, state, clock_.wall_ms());
     else
-        enter(job, state);
+        jobs_.enter(job, state);
 }
 
 Submitted MemStore::submit(const SubmitRequest& request)
 {
     const std::lock_guard lock(mutex_);
     const std::pair key_name{request.tenant, request.idempotency_key};
-    if (const auto key = keys_.find(key_name); key != keys_.end() && !request.idempotency_key.empty()) {
+    if (const auto key = jobs_.keys.find(key_name);
+        key != jobs_.keys.end() && !request.idempotency_key.empty()) {
         if (key->second.body_digest != request.body_digest) return {SubmitStatus::key_reused, {}};
-        return {SubmitStatus::replayed, jobs_.at(key->second.sequence).record};
+        return {SubmitStatus::replayed, jobs_.by_sequence.at(key->second.sequence).record};
     }
-    const Job* twin = request.allow_reuse ? find_reusable(request.tenant, request.spec.render_key) : nullptr;
-    if (twin == nullptr && request.queue_limit != 0 && waiting_.size() >= request.queue_limit)
+    const MemJobs::Job* twin =
+        request.allow_reuse ? jobs_.find_reusable(request.tenant, request.spec.render_key) : nullptr;
+    if (twin == nullptr && request.queue_limit != 0 && jobs_.waiting() >= request.queue_limit)
         return {SubmitStatus::queue_full, {}};
 
-    Job job{.sequence = ++last_sequence_, .record = {}};
-    job.record.id = make_job_id();
-    job.record.tenant = request.tenant;
-    job.record.spec = request.spec;
-    job.record.created_ms = request.now_ms;
+    JobRecord record;
+    record.id = request.id.empty() ? make_job_id() : request.id;
+    record.tenant = request.tenant;
+    record.spec = request.spec;
+    record.created_ms = request.now_ms;
     if (twin != nullptr) {
-        job.record.reused = true;
-        job.record.result = twin->record.result;
+        record.reused = true;
+        record.result = twin->record.result;
     }
-    Job& kept = jobs_.emplace(job.sequence, std::move(job)).first->second;
-    sequence_of_.emplace(kept.record.id, kept.sequence);
+    Job& kept = jobs_.add(std::move(record));
     if (!request.idempotency_key.empty())
-        keys_[key_name] = {request.body_digest, kept.sequence, request.now_ms};
+        jobs_.keys[key_name] = {request.body_digest, kept.sequence, request.now_ms};
     if (kept.record.reused)
-        finish(kept, StoredState::succeeded, request.now_ms);
+        jobs_.finish(kept, StoredState::succeeded, request.now_ms);
     else
-        enter(kept, StoredState::queued);
+        jobs_.enter(kept, StoredState::queued);
     return {SubmitStatus::accepted, kept.record};
 }
 
 std::optional<JobRecord> MemStore::get(const Tenant& tenant, const JobId& id)
 {
     const std::lock_guard lock(mutex_);
-    const Job* job = find(tenant, id);
+    const Job* job = jobs_.find(tenant, id);
     if (job == nullptr) return std::nullopt;
     return job->record;
 }
@@ -198,7 +124,9 @@ ListPage MemStore::list(const ListQuery& query)
     if (!before || query.limit == 0) return page;
     const std::lock_guard lock(mutex_);
     std::uint64_t last = 0;
-    for (auto at = std::make_reverse_iterator(jobs_.lower_bound(*before)); at != jobs_.rend(); ++at) {
+    for (auto at = std::make_reverse_iterator(jobs_.by_sequence.lower_bound(*before));
+         at != jobs_.by_sequence.rend();
+         ++at) {
         if (!matches(at->second, query)) continue;
         if (page.jobs.size() == query.limit) {
             page.next_cursor = cursor_after(last);
@@ -213,8 +141,8 @@ ListPage MemStore::list(const ListQuery& query)
 QueueDepth MemStore::depth()
 {
     const std::lock_guard lock(mutex_);
-    QueueDepth depth{.queued = waiting_.size(), .leased = 0};
-    for (const auto& [sequence, job] : jobs_)
+    QueueDepth depth{.queued = jobs_.waiting(), .leased = 0};
+    for (const auto& [sequence, job] : jobs_.by_sequence)
         if (job.record.state == StoredState::leased) ++depth.leased;
     return depth;
 }
@@ -222,10 +150,9 @@ QueueDepth MemStore::depth()
 std::optional<std::uint32_t> MemStore::queue_position(const JobId& id)
 {
     const std::lock_guard lock(mutex_);
-    const Job* job = find(id);
+    const Job* job = jobs_.find(id);
     if (job == nullptr || job->record.state != StoredState::queued) return std::nullopt;
-    const auto place = waiting_.find({-job->record.spec.priority, job->sequence});
-    return static_cast<std::uint32_t>(std::distance(waiting_.begin(), place));
+    return jobs_.position(*job);
 }
 
 std::vector<Lease> MemStore::claim(const std::string&, std::size_t max, std::chrono::milliseconds ttl)
@@ -233,13 +160,13 @@ std::vector<Lease> MemStore::claim(const std::string&, std::size_t max, std::chr
     const std::lock_guard lock(mutex_);
     const std::vector<Lease> lapsed = leases_.lapsed(clock_.steady());
     for (const Lease& lease : lapsed)
-        if (Job* job = find_leased(lease)) give_back(*job);
+        if (Job* job = jobs_.find_leased(lease)) give_back(*job);
     leases_.forget(lapsed);
 
     std::vector<Lease> leases;
-    while (leases.size() < max && !waiting_.empty()) {
-        Job& job = jobs_.at(waiting_.begin()->second);
-        enter(job, StoredState::leased);
+    while (leases.size() < max && jobs_.waiting() != 0) {
+        Job& job = *jobs_.next_waiting();
+        jobs_.enter(job, StoredState::leased);
         ++job.record.epoch;
         ++job.record.attempts;
         job.record.started_ms = clock_.wall_ms();
@@ -257,33 +184,33 @@ std::size_t MemStore::renew(const std::vector<Lease>& leases, std::chrono::milli
 bool MemStore::complete(const Lease& lease, const JobResult& result, std::int64_t now_ms)
 {
     const std::lock_guard lock(mutex_);
-    Job* job = find_leased(lease);
+    Job* job = jobs_.find_leased(lease);
     if (job == nullptr) return false;
     leases_.forget({lease});
     if (job->record.cancel_requested) {
-        finish(*job, StoredState::canceled, now_ms);
+        jobs_.finish(*job, StoredState::canceled, now_ms);
         return false;
     }
     job->record.result = result;
-    finish(*job, StoredState::succeeded, now_ms);
+    jobs_.finish(*job, StoredState::succeeded, now_ms);
     return true;
 }
 
 bool MemStore::complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms)
 {
     const std::lock_guard lock(mutex_);
-    Job* job = find(id);
+    Job* job = jobs_.find(id);
     if (job == nullptr || job->record.state != StoredState::queued) return false;
     job->record.result = result;
     job->record.reused = true;
-    finish(*job, StoredState::succeeded, now_ms);
+    jobs_.finish(*job, StoredState::succeeded, now_ms);
     return true;
 }
 
 std::optional<JobResult> MemStore::find_result(const Tenant& tenant, const std::string& render_key)
 {
     const std::lock_guard lock(mutex_);
-    const Job* job = find_reusable(tenant, render_key);
+    const Job* job = jobs_.find_reusable(tenant, render_key);
     if (job == nullptr) return std::nullopt;
     return job->record.result;
 }
@@ -292,7 +219,7 @@ void MemStore::release(const std::vector<Lease>& leases)
 {
     const std::lock_guard lock(mutex_);
     for (const Lease& lease : leases) {
-        Job* job = find_leased(lease);
+        Job* job = jobs_.find_leased(lease);
         if (job == nullptr) continue;
         --job->record.attempts;
         give_back(*job);
@@ -303,55 +230,47 @@ void MemStore::release(const std::vector<Lease>& leases)
 bool MemStore::fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms)
 {
     const std::lock_guard lock(mutex_);
-    Job* job = find_leased(lease);
+    Job* job = jobs_.find_leased(lease);
     if (job == nullptr) return false;
     leases_.forget({lease});
     const StoredState state = state_when_failed(retry, job->record.cancel_requested, job->record.attempts);
     if (state == StoredState::failed) job->record.error_json = error_json;
     if (is_final(state))
-        finish(*job, state, now_ms);
+        jobs_.finish(*job, state, now_ms);
     else
-        enter(*job, state);
+        jobs_.enter(*job, state);
     return true;
 }
 
 bool MemStore::confirm_cancel(const Lease& lease, std::int64_t now_ms)
 {
     const std::lock_guard lock(mutex_);
-    Job* job = find_leased(lease);
+    Job* job = jobs_.find_leased(lease);
     if (job == nullptr) return false;
     leases_.forget({lease});
-    finish(*job, StoredState::canceled, now_ms);
+    jobs_.finish(*job, StoredState::canceled, now_ms);
     return true;
 }
 
 std::optional<JobRecord> MemStore::cancel(const Tenant& tenant, const JobId& id, std::int64_t now_ms)
 {
     const std::lock_guard lock(mutex_);
-    Job* job = find(tenant, id);
+    Job* job = jobs_.find(tenant, id);
     if (job == nullptr) return std::nullopt;
     if (job->record.state == StoredState::leased) job->record.cancel_requested = true;
     if (job->record.state == StoredState::queued) {
         job->record.cancel_requested = true;
-        finish(*job, StoredState::canceled, now_ms);
+        jobs_.finish(*job, StoredState::canceled, now_ms);
     }
     return job->record;
-}
-
-void MemStore::forget(std::uint64_t sequence)
-{
-    sequence_of_.erase(jobs_.at(sequence).record.id);
-    jobs_.erase(sequence);
-    for (auto key = keys_.begin(); key != keys_.end();)
-        key = key->second.sequence == sequence ? keys_.erase(key) : std::next(key);
 }
 
 bool MemStore::remove(const Tenant& tenant, const JobId& id)
 {
     const std::lock_guard lock(mutex_);
-    const Job* job = find(tenant, id);
+    const Job* job = jobs_.find(tenant, id);
     if (job == nullptr || !is_final(job->record.state)) return false;
-    forget(job->sequence);
+    jobs_.forget(job->sequence);
     return true;
 }
 
@@ -360,7 +279,7 @@ std::size_t MemStore::sweep(std::int64_t before_ms)
     const std::lock_guard lock(mutex_);
     std::size_t swept = 0;
     std::vector<std::uint64_t> old;
-    for (auto& [sequence, job] : jobs_) {
+    for (auto& [sequence, job] : jobs_.by_sequence) {
         JobRecord& record = job.record;
         if (!is_final(record.state) || *record.finished_ms >= before_ms) continue;
         if (*record.finished_ms < before_ms - kExpiredKept_ms) {
@@ -372,10 +291,10 @@ std::size_t MemStore::sweep(std::int64_t before_ms)
         }
     }
     for (const std::uint64_t sequence : old)
-        forget(sequence);
+        jobs_.forget(sequence);
     const std::int64_t oldest_key = clock_.wall_ms() - kIdempotencyKept_ms;
-    for (auto key = keys_.begin(); key != keys_.end();)
-        key = key->second.created_ms < oldest_key ? keys_.erase(key) : std::next(key);
+    for (auto key = jobs_.keys.begin(); key != jobs_.keys.end();)
+        key = key->second.created_ms < oldest_key ? jobs_.keys.erase(key) : std::next(key);
     return swept + old.size();
 }
 
@@ -383,7 +302,7 @@ std::vector<std::string> MemStore::referenced_digests()
 {
     const std::lock_guard lock(mutex_);
     std::set<std::string> digests;
-    for (const auto& [sequence, job] : jobs_) {
+    for (const auto& [sequence, job] : jobs_.by_sequence) {
         const JobRecord& record = job.record;
         if (!is_final(record.state))
             digests.insert(record.spec.asset_digests.begin(), record.spec.asset_digests.end());
@@ -397,7 +316,7 @@ void MemStore::wait_work(std::chrono::milliseconds timeout, std::stop_token stop
     const std::uint64_t mark = bell_.mark();
     {
         const std::lock_guard lock(mutex_);
-        if (!waiting_.empty()) return;
+        if (jobs_.waiting() != 0) return;
     }
     bell_.wait(mark, leases_.until_lapse(clock_.steady(), timeout), std::move(stop));
 }

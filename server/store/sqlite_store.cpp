@@ -75,7 +75,7 @@ Submitted submit_in(SqliteConnection& db, const SubmitRequest& request)
         return {SubmitStatus::queue_full, {}};
 
     JobRecord job;
-    job.id = make_job_id();
+    job.id = request.id.empty() ? make_job_id() : request.id;
     job.tenant = request.tenant;
     job.spec = request.spec;
     job.created_ms = request.now_ms;

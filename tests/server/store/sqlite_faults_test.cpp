@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(Every,
 
 TEST_P(FailingCall, LosesNothingAcknowledgedAndIsReported)
 {
-    for (int call = 0; call < 60; ++call) {
+    for (int call = 0; call < 36; ++call) {
         const TempFolder folder;
         const auto file = folder.path() / "jobs.sqlite";
         FaultyDisk disk;

@@ -41,6 +41,19 @@ TEST_P(StoreQueue, GivesBackWhatWasSubmitted)
     }
 }
 
+TEST_P(StoreQueue, LetsTheCallerNameAJobOnce)
+{
+    auto request = a_request("named");
+    request.id = server::make_job_id();
+    EXPECT_EQ(store->submit(request).job.id, request.id);
+    EXPECT_EQ(get(request.id).spec.request_json, request.spec.request_json);
+    EXPECT_THROW(store->submit(request), server::StoreError);
+    request.tenant = "bob";
+    EXPECT_THROW(store->submit(request), server::StoreError) << "ids are unique over tenants";
+    EXPECT_EQ(store->depth().queued, 1U);
+    EXPECT_EQ(claim_one().job, request.id);
+}
+
 TEST_P(StoreQueue, KnowsNoJobOfAnotherTenant)
 {
     const JobRecord job = succeed("mine");
