@@ -35,7 +35,7 @@ public:
         const std::size_t before = next_;
         for (auto oldest = waiting_.begin(); oldest != waiting_.end() && oldest->first == next_;
              oldest = waiting_.begin()) {
-            merge_(oldest->first, std::move(oldest->second));
+            merge_(oldest->first, oldest->second);
             waiting_.erase(oldest);
             ++next_;
         }

@@ -45,7 +45,8 @@ public:
         const double by_samples = samples_done / samples_;
         const double by_time = time_s_ ? seconds_since(start_) / *time_s_ : 0;
         fraction_ = at_end ? 1 : std::clamp(std::max(by_samples, by_time), fraction_, 0.999);
-        sink_({fraction_, complete, passes_complete(complete)});
+        complete_ = std::max(complete_, complete); // a thread may come late with what it read earlier
+        sink_({fraction_, complete_, passes_complete(complete_)});
     }
 
 private:
@@ -60,6 +61,7 @@ private:
     std::optional<double> time_s_;
     Clock::time_point start_, last_;
     double fraction_ = 0;
+    std::uint32_t complete_ = 0;
     std::mutex mutex_;
 };
 
@@ -129,7 +131,7 @@ private:
                 samples_of_slice(first_slice + static_cast<std::uint32_t>(number / tiles));
             return SampleRange{slice.first, std::min(slice.end, range.end)};
         };
-        const auto merge = [&](std::size_t number, TracedUnit unit) {
+        const auto merge = [&](std::size_t number, const TracedUnit& unit) {
             film_.merge(unit.sums);
             tally_ += unit.tally;
             const SampleRange slice = slice_of(number);
@@ -164,7 +166,8 @@ private:
     std::size_t window() const
     {
         const std::size_t bytes = grid_.largest_tile_pixels() * sizeof(RgbSum);
-        return std::clamp<std::size_t>((std::size_t{32} << 20) / bytes, 4 * pool_.size(), 4096);
+        return std::max(std::size_t{4} * pool_.size(),
+                        std::min((std::size_t{32} << 20) / bytes, std::size_t{4096}));
     }
 
     RenderReport report(StopReason reason) const

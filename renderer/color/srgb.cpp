@@ -2,6 +2,8 @@
 
 #include "renderer/math/transcendental.h"
 
+#include <cmath>
+
 namespace renderer {
 
 namespace {
@@ -29,7 +31,7 @@ float linear_from_srgb(float encoded)
 
 std::uint8_t quantise_8(float value)
 {
-    return static_cast<std::uint8_t>(clamp_unit(value) * 255.0f + 0.5f);
+    return static_cast<std::uint8_t>(std::lround(clamp_unit(value) * 255.0f));
 }
 
 } // namespace renderer
