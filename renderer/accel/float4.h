@@ -6,6 +6,8 @@
 //          play, everywhere alike.
 #pragma once
 
+#include "renderer/math/vec3.h"
+
 #include <cstddef>
 #include <cstdint>
 
@@ -21,6 +23,11 @@ struct Float4 {
     __m128 v;
 
     static Float4 load(const float* aligned) { return {_mm_load_ps(aligned)}; }
+    // x, y, z and 0. What lies behind them is read too: 16 readable bytes, aligned.
+    static Float4 load3(const Vec3f& padded)
+    {
+        return {_mm_and_ps(_mm_load_ps(&padded.x), _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1)))};
+    }
     static Float4 splat(float x) { return {_mm_set1_ps(x)}; }
     void store(float* aligned) const { _mm_store_ps(aligned, v); }
 
@@ -47,6 +54,7 @@ struct Float4 {
     float v[4];
 
     static Float4 load(const float* p) { return {{p[0], p[1], p[2], p[3]}}; }
+    static Float4 load3(const Vec3f& padded) { return {{padded.x, padded.y, padded.z, 0}}; }
     static Float4 splat(float x) { return {{x, x, x, x}}; }
     void store(float* p) const
     {

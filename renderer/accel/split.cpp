@@ -1,5 +1,7 @@
 #include "renderer/accel/split.h"
 
+#include "renderer/accel/float4.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +12,7 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kBins = 16;
+constexpr std::size_t kFewItems = 32; // half the bins are enough for fewer
 
 template <typename T>
 std::size_t longest_axis(const Bounds3<T>& box)
@@ -32,30 +35,89 @@ double measure(const Bounds3<T>& box, double inverse_extent)
     return x * y + y * z + z * x + 1e-4 * (x + y + z);
 }
 
+// Boxes grown item by item: in four lanes at once where T is float.
 template <typename T>
-struct Bin {
+struct GrowingBox {
     Bounds3<T> box;
-    std::uint32_t count = 0;
+
+    void extend(const BuildItem<T>& item) { box.extend(Bounds3<T>{item.lower, item.upper}); }
+    void extend(const GrowingBox& other) { box.extend(other.box); }
+    void extend_by_center(const BuildItem<T>& item)
+    {
+        box.extend(Vec3<T>{item.center(0), item.center(1), item.center(2)});
+    }
+    Bounds3<T> get() const { return box; }
 };
 
-// Maps centres to bins along one axis; not usable where the centres coincide (or all but).
+template <>
+struct GrowingBox<float> {
+    Float4 lower = Float4::splat(std::numeric_limits<float>::infinity());
+    Float4 upper = Float4::splat(-std::numeric_limits<float>::infinity());
+
+    void extend(const BuildItem<float>& item)
+    {
+        lower = min(Float4::load3(item.lower), lower);
+        upper = max(Float4::load3(item.upper), upper);
+    }
+    void extend(const GrowingBox& other)
+    {
+        lower = min(other.lower, lower);
+        upper = max(other.upper, upper);
+    }
+    void extend_by_center(const BuildItem<float>& item)
+    {
+        const Float4 half = Float4::splat(0.5f);
+        const Float4 center = Float4::load3(item.lower) * half + Float4::load3(item.upper) * half;
+        lower = min(center, lower);
+        upper = max(center, upper);
+    }
+    Bounds3f get() const
+    {
+        alignas(16) float l[4], u[4];
+        lower.store(l);
+        upper.store(u);
+        return {{l[0], l[1], l[2]}, {u[0], u[1], u[2]}};
+    }
+};
+
+// Maps centres to bins along each axis; scale 0 where the centres coincide (or all but): every item in bin 0.
 template <typename T>
 struct Binning {
-    std::size_t axis;
-    T lower;
-    T scale;
-    bool usable;
+    Vec3<T> lower, scale;
+    std::size_t bins;
 
-    Binning(const Bounds3<T>& centers, std::size_t split_axis)
-        : axis(split_axis), lower(centers.lower[split_axis])
+    Binning(const Bounds3<T>& centers, std::size_t count) : lower(centers.lower), bins(count)
     {
-        scale = T(kBins) * (1 - 4 * std::numeric_limits<T>::epsilon()) / (centers.upper[axis] - lower);
-        usable = centers.upper[axis] > lower && std::isfinite(scale) && scale > 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const T s = static_cast<T>(bins) * (1 - 4 * std::numeric_limits<T>::epsilon()) /
+                        (centers.upper[axis] - centers.lower[axis]);
+            scale[axis] = std::isfinite(s) && s > 0 ? s : 0;
+        }
     }
-    std::size_t operator()(const BuildItem<T>& item) const
+    bool usable(std::size_t axis) const { return scale[axis] > 0; }
+    std::int32_t bin(const BuildItem<T>& item, std::size_t axis) const
     {
-        const auto bin = static_cast<std::int32_t>((item.center(axis) - lower) * scale);
-        return static_cast<std::size_t>(std::clamp(bin, 0, static_cast<std::int32_t>(kBins) - 1));
+        const auto place = static_cast<std::int32_t>((item.center(axis) - lower[axis]) * scale[axis]);
+        return std::clamp(place, 0, static_cast<std::int32_t>(bins) - 1);
+    }
+};
+
+template <typename T>
+struct Bins {
+    struct Bin {
+        GrowingBox<T> box;
+        std::uint32_t count = 0;
+    };
+    std::array<std::array<Bin, kBins>, 3> axes;
+
+    Bins(std::span<const BuildItem<T>> run, const Binning<T>& map)
+    {
+        for (const BuildItem<T>& item : run)
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                Bin& bin = axes[axis][static_cast<std::size_t>(map.bin(item, axis))];
+                bin.box.extend(item);
+                ++bin.count;
+            }
     }
 };
 
@@ -78,24 +140,32 @@ struct CostModel {
 };
 
 template <typename T>
-void try_planes(const std::array<Bin<T>, kBins>& bins, std::size_t axis, const CostModel& model, Plane& best)
+void try_planes(
+    const Bins<T>& bins, std::size_t axis, std::size_t count_of_bins, const CostModel& model, Plane& best)
 {
+    const auto& line = bins.axes[axis];
     std::array<double, kBins> right_cost{};
-    Bounds3<T> box;
+    GrowingBox<T> box;
     std::uint32_t count = 0;
-    for (std::size_t i = kBins; i-- > 1;) {
-        if (bins[i].count != 0) box.extend(bins[i].box);
-        count += bins[i].count;
-        right_cost[i] = count == 0 ? -1 : model.side(box, count);
+    double cost = -1; // nothing on this side yet
+    for (std::size_t i = count_of_bins; i-- > 1;) {
+        if (line[i].count != 0) {
+            box.extend(line[i].box);
+            count += line[i].count;
+            cost = model.side(box.get(), count);
+        }
+        right_cost[i] = cost;
     }
     box = {};
     count = 0;
-    for (std::size_t i = 1; i < kBins; ++i) {
-        if (bins[i - 1].count != 0) box.extend(bins[i - 1].box);
-        count += bins[i - 1].count;
-        if (count == 0 || right_cost[i] < 0) continue;
-        const double cost = model.side(box, count) + right_cost[i];
-        if (cost < best.cost) best = {axis, i, cost};
+    for (std::size_t i = 1; i < count_of_bins; ++i) {
+        if (line[i - 1].count == 0)
+            continue; // the plane before does the same, or there is nothing on the left
+        box.extend(line[i - 1].box);
+        count += line[i - 1].count;
+        if (right_cost[i] < 0) break;
+        const double both = model.side(box.get(), count) + right_cost[i];
+        if (both < best.cost) best = {axis, i, both};
     }
 }
 
@@ -104,42 +174,34 @@ void try_planes(const std::array<Bin<T>, kBins>& bins, std::size_t axis, const C
 template <typename T>
 RunBounds<T> bounds_of(std::span<const BuildItem<T>> run)
 {
-    RunBounds<T> bounds;
+    GrowingBox<T> box, centers;
     for (const BuildItem<T>& item : run) {
-        bounds.box.extend(Bounds3<T>{item.lower, item.upper});
-        bounds.centers.extend(Vec3<T>{item.center(0), item.center(1), item.center(2)});
+        box.extend(item);
+        centers.extend_by_center(item);
     }
-    return bounds;
+    return {box.get(), centers.get()};
 }
 
 template <typename T>
 std::optional<SplitChoice>
 split_by_sah(std::span<BuildItem<T>> run, const RunBounds<T>& bounds, std::uint32_t block, double limit)
 {
-    const std::array<Binning<T>, 3> binning{
-        Binning<T>(bounds.centers, 0), Binning<T>(bounds.centers, 1), Binning<T>(bounds.centers, 2)};
-    std::array<std::array<Bin<T>, kBins>, 3> bins;
-    for (const BuildItem<T>& item : run)
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!binning[axis].usable) continue;
-            Bin<T>& bin = bins[axis][binning[axis](item)];
-            bin.box.extend(Bounds3<T>{item.lower, item.upper});
-            ++bin.count;
-        }
     const std::size_t longest = longest_axis(bounds.box);
     const double half = static_cast<double>(bounds.box.upper[longest]) * 0.5 -
                         static_cast<double>(bounds.box.lower[longest]) * 0.5;
     if (!(half > 0)) return std::nullopt;
     const double inverse_extent = 0.5 / half;
     const CostModel model{inverse_extent, measure(bounds.box, inverse_extent), block};
+    const Binning<T> map(bounds.centers, run.size() < kFewItems ? kBins / 2 : kBins);
+    const Bins<T> bins(run, map);
     Plane best;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (binning[axis].usable) try_planes(bins[axis], axis, model, best);
+        if (map.usable(axis)) try_planes(bins, axis, map.bins, model, best);
     if (!std::isfinite(best.cost)) return std::nullopt;
     if (best.cost >= limit) return SplitChoice{0, best.cost};
-    const Binning<T>& map = binning[best.axis];
-    const auto middle = std::partition(
-        run.begin(), run.end(), [&](const BuildItem<T>& item) { return map(item) < best.bin; });
+    const auto middle = std::partition(run.begin(), run.end(), [&](const BuildItem<T>& item) {
+        return map.bin(item, best.axis) < static_cast<std::int32_t>(best.bin);
+    });
     return SplitChoice{static_cast<std::size_t>(middle - run.begin()), best.cost};
 }
 

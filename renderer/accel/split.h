@@ -12,12 +12,12 @@
 
 namespace renderer {
 
-// A primitive while the tree is built.
+// A primitive while the tree is built; aligned and padded so that four floats can be loaded at either corner.
 template <typename T>
-struct BuildItem {
-    Vec3<T> lower;
-    std::uint32_t primitive;
-    Vec3<T> upper;
+struct alignas(16) BuildItem {
+    Vec3<T> lower{};
+    std::uint32_t primitive = 0;
+    alignas(16) Vec3<T> upper{};
 
     // Half of each first: the sum may not be finite.
     T center(std::size_t axis) const { return lower[axis] * T(0.5) + upper[axis] * T(0.5); }
