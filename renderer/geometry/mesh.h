@@ -1,7 +1,8 @@
 // Mesh: triangles as they came out of a file, checked: the imported form, before any BVH.
 //
 // Frame    the file's own coordinates; `part`s of a scene-graph file are already placed.
-// Promise  of a Mesh that validate_mesh() passed: every index is in range, every number finite, at least one triangle.
+// Promise  of a Mesh that validate_mesh() passed: every index is in range, every number finite, at least one
+// triangle.
 #pragma once
 
 #include "renderer/color/rgb.h"
@@ -41,8 +42,8 @@ struct Mesh {
     std::vector<MeshMaterial> materials;           // may be empty
     std::vector<MeshPart> parts;                   // may be empty
 
-    Bounds3f bounds() const;             // of the vertices that triangles use
-    std::uint64_t size_bytes() const;    // of the arrays
+    Bounds3f bounds() const;          // of the vertices that triangles use
+    std::uint64_t size_bytes() const; // of the arrays
 };
 
 } // namespace renderer
