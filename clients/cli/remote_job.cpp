@@ -18,6 +18,8 @@
 namespace clients {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr double kWaitS = 20;        // of one Prefer: wait
 constexpr double kLeastPollS = 0.25; // between two looks, however quick the answers are
 
@@ -61,6 +63,22 @@ std::string progress_note(const api::JobView& job)
     if (job.queue_position) note += ", " + std::to_string(*job.queue_position) + " before it";
     if (job.samples_done > 0) note += ", " + std::to_string(job.samples_done) + " samples";
     return note;
+}
+
+double seconds_since(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// A look at the job; the service may hold it for whole seconds up to `wait_s`, or until `etag` is out of
+// date.
+HttpRequest look_at(const std::string& id, double wait_s, const std::string& etag)
+{
+    HttpRequest request{.path = path_of_job(id), .wait_s = std::clamp(std::floor(wait_s), 0.0, kWaitS)};
+    if (request.wait_s >= 1)
+        request.headers.emplace_back("Prefer", "wait=" + std::to_string(static_cast<int>(request.wait_s)));
+    if (!etag.empty()) request.headers.emplace_back("If-None-Match", etag);
+    return request;
 }
 
 std::string media_type_of(const std::string& output)
@@ -124,23 +142,16 @@ api::JobView get_job(HttpClient& client, const std::string& id, std::string* tex
 api::JobView
 wait_for_job(HttpClient& client, const std::string& id, std::optional<double> timeout_s, bool quiet)
 {
-    using Clock = std::chrono::steady_clock;
-    const auto seconds_since = [](Clock::time_point start) {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    };
     const Clock::time_point start = Clock::now();
     ProgressBar bar(!quiet);
     std::optional<api::JobView> job;
     for (std::string etag;;) {
         const Clock::time_point asked = Clock::now();
+        const bool first_look = !job; // may be all that it takes; only the next one waits
         const double left_s = timeout_s ? *timeout_s - seconds_since(start) : kWaitS;
-        const double wait_s = job ? std::clamp(std::floor(left_s), 0.0, kWaitS) : 0; // first a look
-        HttpRequest request{.path = path_of_job(id), .wait_s = wait_s};
-        if (wait_s >= 1)
-            request.headers.emplace_back("Prefer", "wait=" + std::to_string(static_cast<int>(wait_s)));
         // Where nobody watches, only the end is of interest; else every change is.
-        if (!etag.empty() && bar.visible()) request.headers.emplace_back("If-None-Match", etag);
-        const HttpAnswer answer = client.send(request);
+        const HttpRequest look = look_at(id, first_look ? 0 : left_s, bar.visible() ? etag : std::string());
+        const HttpAnswer answer = client.send(look);
         if (answer.status != 304) {
             job = job_from(answer, id);
             etag = answer.header("etag");
@@ -149,6 +160,7 @@ wait_for_job(HttpClient& client, const std::string& id, std::optional<double> ti
         if (job && api::is_final(job->state)) return *std::move(job);
         if (timeout_s && seconds_since(start) >= *timeout_s)
             throw UserError(ExitCode::timed_out, id + " is not finished after the --timeout; it goes on");
+        if (first_look) continue;
         const double pause_s = std::max(0.0, kLeastPollS - seconds_since(asked));
         client.pause(timeout_s ? std::clamp(*timeout_s - seconds_since(start), 0.0, pause_s) : pause_s);
     }

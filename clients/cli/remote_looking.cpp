@@ -56,6 +56,17 @@ void print_status(const api::JobView& job)
     }
 }
 
+// NAME=VALUE as --label of submit has it, NAME:VALUE as the query has it.
+std::string label_query(std::string label)
+{
+    const std::size_t equals = label.find('=');
+    if (label.empty()) return label;
+    if (equals == 0 || equals == std::string::npos)
+        throw UserError(ExitCode::usage, "--label " + label + ": write NAME=VALUE");
+    label[equals] = ':';
+    return label;
+}
+
 std::string list_path(const ListOptions& options, const std::string& cursor, std::uint32_t left)
 {
     std::string path = "/v1/jobs";
@@ -66,7 +77,7 @@ std::string list_path(const ListOptions& options, const std::string& cursor, std
         path += '=' + percent_encoded(value);
     };
     add("state", options.state);
-    add("label", options.label);
+    add("label", label_query(options.label));
     add("limit", left > 0 ? std::to_string(std::min(left, 100u)) : "");
     add("cursor", cursor);
     return path;

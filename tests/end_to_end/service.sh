@@ -25,9 +25,9 @@ is_png() # FILE
     equal 89504e470d0a1a0a "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" "first bytes of $1"
 }
 
-start_service() # [OPTIONS...]: sets U and HEALTH
+start_service() # [OPTIONS...]: on $PORT, else on a free one; sets U and HEALTH
 {
-    "$BIN/heliographd" --port 0 --health-port 0 --data "$WORK/data" "$@" >"$WORK/ready" 2>>"$WORK/log" &
+    "$BIN/heliographd" --port "${PORT:-0}" --health-port 0 --data "$WORK/data" "$@" >"$WORK/ready" 2>>"$WORK/log" &
     SERVICE=$!
     tries=0
     until grep -q http "$WORK/ready"; do
