@@ -27,6 +27,7 @@ is_png() # FILE
 
 start_service() # [OPTIONS...]: on $PORT, else on a free one; sets U and HEALTH
 {
+    : >"$WORK/ready" # here, not by the child: what an earlier service said must be gone before the first look
     "$BIN/heliographd" --port "${PORT:-0}" --health-port 0 --data "$WORK/data" "$@" >"$WORK/ready" 2>>"$WORK/log" &
     SERVICE=$!
     tries=0
