@@ -53,6 +53,14 @@ api::ProblemDetails key_reused_problem()
                    false);
 }
 
+api::ProblemDetails bad_cursor_problem()
+{
+    return api::problem_from_faults(
+        422,
+        "invalid_query",
+        {{"", "invalid_parameter", "cursor is what next_cursor of the page before said, and nothing else"}});
+}
+
 api::ProblemDetails not_found_problem(const JobId& id)
 {
     return problem(404, "not_found", "there is no job " + id, false);

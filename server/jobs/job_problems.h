@@ -17,6 +17,7 @@ api::ProblemDetails draining_problem();
 api::ProblemDetails storage_full_problem();
 api::ProblemDetails queue_full_problem(std::uint64_t limit);
 api::ProblemDetails key_reused_problem();
+api::ProblemDetails bad_cursor_problem();
 api::ProblemDetails not_found_problem(const JobId& id);
 api::ProblemDetails still_running_problem(const JobId& id);
 api::ProblemDetails render_failed_problem(const JobId& id,

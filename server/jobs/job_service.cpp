@@ -172,6 +172,7 @@ JobService::wait(const JobId& id, std::chrono::milliseconds timeout, const std::
 std::variant<std::string, api::ProblemDetails> JobService::list(const ListQuery& query)
 {
     const ListPage page = state_->store.list(query);
+    if (page.bad_cursor) return bad_cursor_problem();
     std::vector<api::JobView> views;
     views.reserve(page.jobs.size());
     for (const JobRecord& record : page.jobs)
