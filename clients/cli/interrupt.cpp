@@ -10,7 +10,7 @@ namespace {
 // Sent to the waiting thread alone, to end it.
 constexpr int kEnd = SIGUSR1;
 
-void wait_for_signals(const std::stop_token& done, std::stop_source stop, const sigset_t& signals)
+void wait_for_signals(const std::stop_token& done, const std::stop_source& stop, const sigset_t& signals)
 {
     for (int signal = 0; ::sigwait(&signals, &signal) == 0;) {
         if (signal == kEnd) {

@@ -24,7 +24,7 @@ struct RenderOptions {
     std::optional<renderer::BvhSplit> split;
     bool quiet = false;
 };
-ExitCode render_command(const RenderOptions& options, std::stop_token stop);
+ExitCode render_command(const RenderOptions& options, const std::stop_token& stop);
 
 struct CheckOptions {
     std::string scene;

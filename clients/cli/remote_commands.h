@@ -46,7 +46,7 @@ struct RunOptions {
     std::string output;
     std::optional<double> timeout_s;
 };
-ExitCode run_command(const ServiceOptions& service, const RunOptions& options, std::stop_token stop);
+ExitCode run_command(const ServiceOptions& service, const RunOptions& options, const std::stop_token& stop);
 
 struct StatusOptions {
     std::string id;

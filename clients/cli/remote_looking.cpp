@@ -34,8 +34,12 @@ std::string state_text(const api::JobView& job)
 std::string labels_text(const api::JobView& job)
 {
     std::string text;
-    for (const auto& [name, value] : job.labels)
-        text += (text.empty() ? "" : " ") + name + '=' + value;
+    for (const auto& [name, value] : job.labels) {
+        if (!text.empty()) text += ' ';
+        text += name;
+        text += '=';
+        text += value;
+    }
     return text;
 }
 

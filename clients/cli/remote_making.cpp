@@ -45,7 +45,7 @@ void cancel_quietly(const ServiceOptions& service, const std::string& id)
 
 } // namespace
 
-ExitCode run_command(const ServiceOptions& service, const RunOptions& options, std::stop_token stop)
+ExitCode run_command(const ServiceOptions& service, const RunOptions& options, const std::stop_token& stop)
 {
     check_writable(options.output);
     HttpClient client(parse_service_url(service.url), service.patience_s, stop);

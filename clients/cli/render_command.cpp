@@ -102,7 +102,7 @@ encode_picture(const renderer::RenderResult& result, const api::JobRequest& requ
 
 } // namespace
 
-ExitCode render_command(const RenderOptions& options, std::stop_token stop)
+ExitCode render_command(const RenderOptions& options, const std::stop_token& stop)
 {
     const PictureFormat format = format_of(options.output);
     check_writable(options.output);

@@ -89,6 +89,21 @@ equal 130 $code "an interrupted run"
 wait_for "$("$helio" list --label by=run | cut -d' ' -f1)" canceled
 [ ! -e no.png ] || fail "there is a picture of nothing"
 
+# A local render that is interrupted leaves nothing. It is ready for signals once its second thread is there.
+"$helio" render long.json -o no.png 2>err &
+runner=$!
+tries=0
+until [ "$(find "/proc/$runner/task" -mindepth 1 -maxdepth 1 | wc -l)" -gt 1 ]; do
+    tries=$((tries + 1))
+    [ $tries -lt 200 ] || fail "the render did not start"
+    sleep 0.05
+done
+kill -TERM $runner
+code=0
+wait $runner || code=$?
+equal 130 $code "an interrupted render: $(cat err)"
+equal "" "$(find . -name 'no.png*')" "what an interrupted render leaves"
+
 # Faults: told before anything is sent, with pointers; and those that only the service finds.
 echo '{"scene":{"objects":[{"mesh":"absent.obj"},{"shape":"sphere"}]}}' >bad.json
 equal 3 "$(code_of "$helio" submit bad.json)" "a mesh that is not there"
