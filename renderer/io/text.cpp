@@ -59,7 +59,7 @@ std::string lower_case(std::string_view text)
 
 std::optional<float> parse_float(std::string_view word)
 {
-    if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+    if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
     const char* const end = word.data() + word.size();
     float value = 0;
     auto parsed = std::from_chars(word.data(), end, value);

@@ -29,7 +29,8 @@ struct ImportRun {
 struct ImportRunEnd {
     std::optional<ImportOutcome> outcome; // nothing if `stop` was requested
     bool repeatable = true;               // false: another time it might come out otherwise (time, memory)
-    std::uint64_t peak_bytes = 0;         // of the child
+    std::uint64_t peak_bytes =
+        0; // of the child, but no less than of this process when it started it (Linux counts so)
     double cpu_s = 0;
     std::string log; // what the child wrote to its log, bounded; as hostile as the file
 };
