@@ -124,7 +124,7 @@ std::variant<SubmitAnswer, api::ProblemDetails> JobService::submit(const SubmitW
     if (submitted.status != SubmitStatus::accepted || is_final(submitted.job.state))
         s.live.forget(id);
     else if (outcome)
-        s.keeper.keep({{id}, std::nullopt, outcome});
+        s.keeper.keep({{id}, std::nullopt, outcome, true});
 
     switch (submitted.status) {
     case SubmitStatus::queue_full:

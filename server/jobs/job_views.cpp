@@ -90,7 +90,8 @@ api::JobView view_of(const JobRecord& record,
         view.progress = live->progress;
         view.samples_done = live->samples;
         view.reused = live->joined;
-        if (live->started_ms) view.started_ms = live->started_ms;
+        if (!view.started_ms)
+            view.started_ms = live->started_ms; // the claim is the same moment, but for a tick
         if (live->outcome) add_outcome(view, *live->outcome);
     }
     if (view.state == api::JobState::queued) view.queue_position = queue_position;

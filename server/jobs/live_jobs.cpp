@@ -159,7 +159,7 @@ StopCause LiveJobs::stop_cause(const JobId& id) const
     return found == jobs_.end() ? StopCause::none : found->second.cause;
 }
 
-LiveJobs::Settled LiveJobs::finish(const JobId& id, JobOutcome outcome)
+LiveJobs::Settled LiveJobs::finish(const JobId& id, JobOutcome outcome, bool reused)
 {
     const std::lock_guard lock(mutex_);
     Entry& entry = jobs_[id];
@@ -167,6 +167,7 @@ LiveJobs::Settled LiveJobs::finish(const JobId& id, JobOutcome outcome)
         outcome = JobOutcome{.phase = LivePhase::canceled, .finished_ms = outcome.finished_ms};
     entry.job.outcome = std::make_shared<const JobOutcome>(std::move(outcome));
     entry.job.phase = entry.job.outcome->phase;
+    entry.job.joined = reused && entry.job.phase == LivePhase::succeeded;
     changed(entry, true);
 
     Settled settled{entry.job.outcome, {}};

@@ -87,7 +87,8 @@ public:
         OutcomePtr outcome;           // as published: canceled, where a cancel came first
         std::vector<JobId> followers; // queued jobs that ended with the same result
     };
-    Settled finish(const JobId& id, JobOutcome outcome);
+    // `reused`: the outcome is another job's.
+    Settled finish(const JobId& id, JobOutcome outcome, bool reused = false);
     void forget(const JobId& id); // the store knows the outcome
 
     Snapshot snapshot(const JobId& id) const;

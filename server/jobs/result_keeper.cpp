@@ -98,7 +98,7 @@ void ResultKeeper::store_outcome(const KeptOutcome& kept)
     {
         const std::lock_guard results(results_);
         if (outcome.png) rooms_.blobs.put(BlobStore::Kind::result, *outcome.png);
-        if (kept.lease) store_lease(*kept.lease, outcome);
+        if (kept.lease) store_lease(kept, *kept.lease);
         for (const JobId& id : kept.queued)
             rooms_.store.complete_queued(id, outcome.result, outcome.finished_ms);
     }
@@ -107,12 +107,13 @@ void ResultKeeper::store_outcome(const KeptOutcome& kept)
         forget_if_final(id);
 }
 
-void ResultKeeper::store_lease(const Lease& lease, const JobOutcome& outcome)
+void ResultKeeper::store_lease(const KeptOutcome& kept, const Lease& lease)
 {
+    const JobOutcome& outcome = *kept.outcome;
     bool ours = false;
     switch (outcome.phase) {
     case LivePhase::succeeded:
-        ours = rooms_.store.complete(lease, outcome.result, outcome.finished_ms);
+        ours = rooms_.store.complete(lease, outcome.result, outcome.finished_ms, kept.reused);
         break;
     case LivePhase::failed:
         ours = rooms_.store.fail(lease, api::write_problem(outcome.error), false, outcome.finished_ms);

@@ -27,8 +27,9 @@ namespace server {
 
 struct KeptOutcome {
     std::vector<JobId> queued;  // jobs not claimed that take this outcome
-    std::optional<Lease> lease; // of the job that made it
+    std::optional<Lease> lease; // of the job that was claimed for it
     OutcomePtr outcome;
+    bool reused = false; // another job's render made it
 };
 
 class ResultKeeper {
@@ -61,7 +62,7 @@ private:
     void run(const std::stop_token& stop);
     bool try_keep(const KeptOutcome& kept);
     void store_outcome(const KeptOutcome& kept);
-    void store_lease(const Lease& lease, const JobOutcome& outcome);
+    void store_lease(const KeptOutcome& kept, const Lease& lease);
     void forget_if_final(const JobId& id);
     void give_back(const KeptOutcome& kept);
     void sweep();

@@ -66,7 +66,7 @@ void Worker::take(const Lease& lease, const std::stop_token& stop)
     const std::int64_t now = unix_ms();
     const LiveJobs::Begun begun = rooms_.live.begin(lease.job, now);
     if (begun.outcome) { // another job's result became its own while it waited
-        rooms_.keeper.keep({{}, lease, begun.outcome});
+        rooms_.keeper.keep({{}, lease, begun.outcome, true});
         return;
     }
     Task task{lease, {}, begun.stop, now};
@@ -127,9 +127,9 @@ bool Worker::end_with_known_result(const Task& task, const Sharing& sharing)
         JobOutcome outcome{.phase = LivePhase::succeeded};
         outcome.result = std::move(*known);
         outcome.finished_ms = unix_ms();
-        settled = rooms_.live.finish(task.lease.job, std::move(outcome)); // from here on it is needed
+        settled = rooms_.live.finish(task.lease.job, std::move(outcome), true); // from here on it is needed
     }
-    rooms_.keeper.keep({settled.followers, task.lease, settled.outcome});
+    rooms_.keeper.keep({settled.followers, task.lease, settled.outcome, true});
     return true;
 }
 

@@ -32,7 +32,7 @@ public:
     std::vector<Lease>
     claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) override;
     std::size_t renew(const std::vector<Lease>& leases, std::chrono::milliseconds ttl) override;
-    bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms) override;
+    bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms, bool reused) override;
     bool complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms) override;
     std::optional<JobResult> find_result(const Tenant& tenant, const std::string& render_key) override;
     void release(const std::vector<Lease>& leases) override;
@@ -181,7 +181,7 @@ std::size_t MemStore::renew(const std::vector<Lease>& leases, std::chrono::milli
     return leases_.renew(leases, clock_.steady() + ttl);
 }
 
-bool MemStore::complete(const Lease& lease, const JobResult& result, std::int64_t now_ms)
+bool MemStore::complete(const Lease& lease, const JobResult& result, std::int64_t now_ms, bool reused)
 {
     const std::lock_guard lock(mutex_);
     Job* job = jobs_.find_leased(lease);
@@ -192,6 +192,7 @@ bool MemStore::complete(const Lease& lease, const JobResult& result, std::int64_
         return false;
     }
     job->record.result = result;
+    job->record.reused = reused;
     jobs_.finish(*job, StoredState::succeeded, now_ms);
     return true;
 }

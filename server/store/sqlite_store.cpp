@@ -30,7 +30,7 @@ public:
     std::vector<Lease>
     claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) override;
     std::size_t renew(const std::vector<Lease>& leases, std::chrono::milliseconds ttl) override;
-    bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms) override;
+    bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms, bool reused) override;
     bool complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms) override;
     std::optional<JobResult> find_result(const Tenant& tenant, const std::string& render_key) override;
     void release(const std::vector<Lease>& leases) override;
@@ -171,12 +171,13 @@ bool Embedded::leave(const Lease& lease, std::int64_t now_ms, const Change& chan
     return state.has_value();
 }
 
-bool Embedded::complete(const Lease& lease, const JobResult& result, std::int64_t now_ms)
+bool Embedded::complete(const Lease& lease, const JobResult& result, std::int64_t now_ms, bool reused)
 {
     bool kept = false;
     const bool owned = leave(lease, now_ms, [&](SqliteConnection& db, const JobHead& job) {
         kept = !job.cancel_requested;
         if (kept) insert_result(db, job.sequence, result);
+        if (kept && reused) set_reused(db, job.sequence);
         return kept ? StoredState::succeeded : StoredState::canceled;
     });
     return owned && kept;

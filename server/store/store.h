@@ -151,8 +151,9 @@ public:
     claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) = 0;
     virtual std::size_t renew(const std::vector<Lease>& leases,
                               std::chrono::milliseconds ttl) = 0; // still owned
-    // False: fenced, or canceled meanwhile; the result is not kept.
-    virtual bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms) = 0;
+    // `reused`: the result is another job's. False: fenced, or canceled meanwhile; the result is not kept.
+    virtual bool
+    complete(const Lease& lease, const JobResult& result, std::int64_t now_ms, bool reused = false) = 0;
     // A queued job takes the result of another with the same render_key: succeeded and `reused`, without
     // being claimed. False if it is not queued.
     virtual bool complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms) = 0;

@@ -123,6 +123,14 @@ TEST_P(StoreQueue, CompletesALeasedJob)
     EXPECT_FALSE(get(id).reused);
 }
 
+TEST_P(StoreQueue, CompletesAClaimedJobWithAnothersResult)
+{
+    const auto id = submit("bunny").id;
+    EXPECT_TRUE(store->complete(claim_one(), a_result("bunny"), now(), true));
+    EXPECT_EQ(get(id).state, StoredState::succeeded);
+    EXPECT_TRUE(get(id).reused);
+}
+
 TEST_P(StoreQueue, RefusesEveryWordOfAZombie)
 {
     const auto id = submit("bunny").id;

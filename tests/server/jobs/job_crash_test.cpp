@@ -1,0 +1,139 @@
+// What survives: a node that dies with results in memory alone, a full disk, a job that kills its worker.
+#include "tests/server/jobs/faulty_store.h"
+#include "tests/server/jobs/job_fixture.h"
+
+#include <thread>
+
+namespace {
+
+using api::JobState;
+using tests::DiskFaults;
+using tests::FaultyStore;
+using tests::Node;
+
+using JobCrash = tests::JobServiceTest;
+INSTANTIATE_TEST_SUITE_P(OnDisk, JobCrash, testing::Values("SqliteStore"), [](const auto& suite) {
+    return std::string(suite.param);
+});
+
+Node::Wrap wrap_in(DiskFaults& faults)
+{
+    return [&faults](std::unique_ptr<server::Store> real) {
+        return std::make_unique<FaultyStore>(std::move(real), faults);
+    };
+}
+
+TEST_P(JobCrash, RendersTheSameBytesAgainAfterALostResult)
+{
+    DiskFaults faults;
+    faults.no_results = true; // and nothing is released: the node dies with the lease
+    std::string id, digest, follower;
+    {
+        const auto node = open({}, wrap_in(faults));
+        id = submit(*node, tests::quick_job()).id;
+        follower = submit(*node, tests::quick_job()).id;
+        node->jobs.start();
+        tests::succeeded(*node, id);
+        digest = tests::digest_of_picture(*node, id);
+        EXPECT_EQ(tests::digest_of_picture(*node, follower), digest);
+    }
+    const auto node = open();
+    EXPECT_EQ(node->jobs.get(id)->state, JobState::queued);
+    node->jobs.start();
+    EXPECT_EQ(tests::succeeded(*node, id).attempts, 2U);
+    tests::succeeded(*node, follower);
+    EXPECT_EQ(tests::digest_of_picture(*node, id), digest);
+    EXPECT_EQ(tests::digest_of_picture(*node, follower), digest);
+}
+
+TEST_P(JobCrash, ServesFromMemoryUntilTheDiskTakesTheResult)
+{
+    DiskFaults faults;
+    faults.no_results = true;
+    const auto node = open({}, wrap_in(faults));
+    node->jobs.start();
+    const std::string id = submit(*node, tests::quick_job()).id;
+    tests::succeeded(*node, id);
+    faults.refused_results.wait(0);
+    EXPECT_EQ(node->jobs.get(id)->state, JobState::succeeded);
+    tests::digest_of_picture(*node, id);
+    // The same job, meanwhile, has it too.
+    EXPECT_TRUE(tests::succeeded(*node, submit(*node, tests::quick_job()).id).reused);
+    faults.no_results = false;
+    EXPECT_TRUE(node->jobs.remove(id)); // waits for the row
+}
+
+TEST_P(JobCrash, TriesAgainAfterTheStoreFailed)
+{
+    DiskFaults faults;
+    const auto node = open({}, wrap_in(faults));
+    const std::string id = submit(*node, tests::quick_job()).id;
+    faults.lost_reads = 1; // the worker's
+    node->jobs.start();
+    while (faults.lost_reads != 0)
+        std::this_thread::yield();
+    EXPECT_EQ(tests::succeeded(*node, id).attempts, 2U);
+}
+
+TEST_P(JobCrash, AnswersThatTheDiskIsFull)
+{
+    DiskFaults faults;
+    const auto node = open({}, wrap_in(faults));
+    node->jobs.start();
+    const std::string kept = submit(*node, tests::quick_job()).id;
+    faults.full = true;
+    const auto problem =
+        tests::refusal(*node, {.body = tests::quick_job("", 5), .part_digests = {}, .idempotency_key = {}});
+    EXPECT_EQ(problem.status, 503);
+    EXPECT_EQ(problem.code, "storage_full");
+    tests::succeeded(*node, kept);
+    faults.full = false;
+    tests::succeeded(*node, submit(*node, tests::quick_job("", 5)).id);
+}
+
+TEST_P(JobCrash, GivesUpOnAJobThatKillsItsWorker)
+{
+    std::string id;
+    for (std::uint32_t death = 0; death < server::kMaxAttempts; ++death) {
+        const auto node = open(); // claims, and dies without a word
+        if (id.empty()) id = submit(*node, tests::quick_job()).id;
+        ASSERT_EQ(node->store->claim("dies", 1, std::chrono::hours(1)).size(), 1U);
+    }
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView failed = tests::finished(*node, id);
+    ASSERT_EQ(failed.state, JobState::failed);
+    EXPECT_EQ(failed.error->code, "too_many_attempts");
+    tests::succeeded(*node, submit(*node, tests::quick_job("", 7)).id);
+}
+
+TEST_P(JobCrash, CancelsAfterARestartWhatWasToBeCanceled)
+{
+    std::string id;
+    {
+        const auto node = open();
+        id = submit(*node, tests::quick_job()).id;
+        ASSERT_EQ(node->store->claim("dies", 1, std::chrono::hours(1)).size(), 1U);
+        EXPECT_EQ(node->jobs.cancel(id)->state, JobState::canceling);
+    }
+    const auto node = open();
+    node->jobs.start();
+    EXPECT_EQ(tests::finished(*node, id).state, JobState::canceled);
+}
+
+TEST_P(JobCrash, TakesUpAStoppedJobAtTheNextStart)
+{
+    std::string id;
+    {
+        const auto node = open();
+        node->jobs.start();
+        id = submit(*node, tests::endless_job()).id;
+        tests::running(*node, id);
+    }
+    const auto node = open();
+    EXPECT_EQ(node->jobs.get(id)->state, JobState::queued);
+    node->jobs.start();
+    EXPECT_EQ(tests::running(*node, id).attempts, 1U);
+}
+
+} // namespace

@@ -1,0 +1,246 @@
+// A job's life as a handler sees it, over both stores.
+#include "tests/server/jobs/job_fixture.h"
+
+#include <thread>
+
+namespace {
+
+using namespace std::chrono_literals;
+using api::JobState;
+using tests::Node;
+
+using JobService = tests::JobServiceTest;
+INSTANTIATE_TEST_SUITE_P(Every,
+                         JobService,
+                         testing::Values("MemStore", "SqliteStore"),
+                         [](const auto& suite) { return std::string(suite.param); });
+
+TEST_P(JobService, RendersAPicture)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView accepted = submit(*node, tests::quick_job(R"(,"labels":{"who":"me"},"priority":60)"));
+    EXPECT_EQ(accepted.id.size(), 32U);
+    EXPECT_TRUE(server::is_digest(accepted.render_key));
+    EXPECT_FALSE(accepted.reused);
+    const api::JobView done = tests::succeeded(*node, accepted.id);
+    EXPECT_EQ(done.progress, 1);
+    EXPECT_EQ(done.samples_done, 4U);
+    EXPECT_EQ(done.attempts, 1U);
+    EXPECT_EQ(done.labels.at("who"), "me");
+    EXPECT_EQ(done.priority, 60);
+    EXPECT_TRUE(done.started_ms && done.finished_ms && *done.started_ms <= *done.finished_ms);
+    tests::digest_of_picture(*node, done.id);
+    EXPECT_NE(tests::expect<std::string>(node->jobs.report(done.id)).find(done.id), std::string::npos);
+    EXPECT_NE(tests::expect<std::string>(node->jobs.scene(done.id)).find("camera"), std::string::npos);
+}
+
+TEST_P(JobService, ShowsTheSameBeforeAndAfterTheResultIsStored)
+{
+    auto node = open();
+    node->jobs.start();
+    const api::JobView before = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
+    node->jobs.stop(); // everything is stored
+    const api::JobView after = node->jobs.get(before.id).value();
+    EXPECT_EQ(api::write_job_view(after), api::write_job_view(before));
+}
+
+TEST_P(JobService, RendersAMeshThatWasUploaded)
+{
+    const auto node = open();
+    node->jobs.start();
+    const std::string digest = tests::upload(*node, tests::kTetrahedron);
+    tests::succeeded(*node, submit(*node, tests::mesh_job(digest)).id);
+    EXPECT_EQ(node->imports.imports_run(), 1U);
+    // The name is part of what is asked for; the mesh is known.
+    tests::succeeded(*node, submit(*node, tests::mesh_job(digest), true).id);
+    EXPECT_EQ(node->imports.imports_run(), 1U);
+}
+
+TEST_P(JobService, FailsAJobWhoseMeshIsBrokenAndRefusesTheNext)
+{
+    const auto node = open();
+    node->jobs.start();
+    const std::string body = tests::mesh_job(tests::upload(*node, "v 0 0 0\nv 1 0 0\nf 1 2 9\n"));
+    const api::JobView failed = tests::finished(*node, submit(*node, body).id);
+    ASSERT_EQ(failed.state, JobState::failed);
+    ASSERT_TRUE(failed.error && !failed.error->errors.empty());
+    EXPECT_EQ(failed.error->status, 422);
+    EXPECT_EQ(failed.error->code, "invalid_scene");
+    EXPECT_EQ(failed.error->errors.front().pointer, "/scene/objects/0/mesh");
+    const api::ProblemDetails image = tests::image_refusal(*node, failed.id);
+    EXPECT_EQ(image.status, 409);
+    EXPECT_EQ(image.code, "render_failed");
+
+    const api::ProblemDetails refused =
+        tests::refusal(*node, {.body = body, .part_digests = {}, .idempotency_key = {}});
+    EXPECT_EQ(refused.status, 422);
+    EXPECT_EQ(refused.errors, failed.error->errors);
+}
+
+TEST_P(JobService, RefusesWhatCannotBeRead)
+{
+    const auto node = open();
+    EXPECT_EQ(tests::refusal(*node, {.body = "{", .part_digests = {}, .idempotency_key = {}}).status, 400);
+    const std::string unknown = "sha256:" + std::string(64, 'a');
+    const auto problem =
+        tests::refusal(*node, {.body = tests::mesh_job(unknown), .part_digests = {}, .idempotency_key = {}});
+    EXPECT_EQ(problem.status, 422);
+    ASSERT_EQ(problem.errors.size(), 1U);
+    EXPECT_EQ(problem.errors.front().code, "missing_asset");
+}
+
+TEST_P(JobService, RefusesWhenTheQueueIsFull)
+{
+    renderer::Limits limits;
+    limits.queue_jobs = 2;
+    const auto node = open(limits); // no worker: nothing leaves the queue
+    EXPECT_EQ(submit(*node, tests::quick_job("", 1)).queue_position, 0U);
+    EXPECT_EQ(submit(*node, tests::quick_job("", 2)).queue_position, 1U);
+    const auto problem =
+        tests::refusal(*node, {.body = tests::quick_job("", 3), .part_digests = {}, .idempotency_key = {}});
+    EXPECT_EQ(problem.status, 429);
+    EXPECT_EQ(problem.code, "queue_full");
+    EXPECT_TRUE(problem.retryable);
+    EXPECT_GE(node->jobs.estimated_wait_s(), 1);
+    EXPECT_LE(node->jobs.estimated_wait_s(), 3600);
+}
+
+TEST_P(JobService, ReplaysAnIdempotencyKey)
+{
+    const auto node = open();
+    const server::SubmitWords words{.body = tests::quick_job(), .part_digests = {}, .idempotency_key = "k1"};
+    const auto first = tests::expect<server::SubmitAnswer>(node->jobs.submit(words));
+    const auto second = tests::expect<server::SubmitAnswer>(node->jobs.submit(words));
+    EXPECT_FALSE(first.replayed);
+    EXPECT_TRUE(second.replayed);
+    EXPECT_EQ(first.job.id, second.job.id);
+    const auto problem =
+        tests::refusal(*node, {.body = tests::quick_job("", 9), .part_digests = {}, .idempotency_key = "k1"});
+    EXPECT_EQ(problem.code, "idempotency_key_reuse");
+    node->jobs.start();
+    tests::succeeded(*node, first.job.id);
+}
+
+TEST_P(JobService, CancelsAQueuedJobAtOnceAndStaysCanceled)
+{
+    const auto node = open();
+    const api::JobView job = submit(*node, tests::quick_job());
+    EXPECT_EQ(node->jobs.cancel(job.id)->state, JobState::canceled);
+    EXPECT_EQ(node->jobs.cancel(job.id)->state, JobState::canceled);
+    EXPECT_EQ(tests::image_refusal(*node, job.id).status, 409);
+    EXPECT_FALSE(node->jobs.cancel(server::make_job_id()));
+}
+
+TEST_P(JobService, CancelsARunningJob)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView job = submit(*node, tests::endless_job());
+    tests::running(*node, job.id);
+    EXPECT_EQ(tests::image_refusal(*node, job.id).code, "still_running");
+    const auto answered = node->jobs.cancel(job.id);
+    EXPECT_TRUE(answered->state == JobState::canceling || answered->state == JobState::canceled);
+    EXPECT_EQ(tests::finished(*node, job.id).state, JobState::canceled);
+    tests::succeeded(*node, submit(*node, tests::quick_job()).id); // the worker is free
+    EXPECT_EQ(node->jobs.get(job.id)->state, JobState::canceled);
+}
+
+TEST_P(JobService, TellsProgressToWhoWaitsWithAnETag)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView job = submit(*node, tests::endless_job());
+    const api::JobView seen = tests::running(*node, job.id);
+    const auto next = node->jobs.wait(job.id, tests::kPatience, server::etag_of(seen));
+    ASSERT_TRUE(next);
+    EXPECT_NE(server::etag_of(*next), server::etag_of(seen));
+    EXPECT_EQ(next->state, JobState::running);
+    EXPECT_GE(next->progress, seen.progress);
+    // Without one, only an end counts: time runs out first.
+    EXPECT_EQ(node->jobs.wait(job.id, 10ms)->state, JobState::running);
+}
+
+TEST_P(JobService, FailsAJobAtItsTimeLimit)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView failed =
+        tests::finished(*node, submit(*node, tests::endless_job(R"(,"limits":{"time_s":0.05})")).id);
+    ASSERT_EQ(failed.state, JobState::failed);
+    EXPECT_EQ(failed.error->code, "time_limit");
+}
+
+TEST_P(JobService, ForgetsAJobAndItsPicture)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView done = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
+    const std::string digest = tests::digest_of_picture(*node, done.id);
+    EXPECT_TRUE(node->jobs.remove(done.id));
+    EXPECT_FALSE(node->jobs.get(done.id));
+    EXPECT_FALSE(node->blobs.has(server::BlobStore::Kind::result, digest));
+    EXPECT_EQ(tests::image_refusal(*node, done.id).status, 404);
+    EXPECT_FALSE(node->jobs.remove(done.id));
+}
+
+TEST_P(JobService, RemovesARunningJob)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView job = submit(*node, tests::endless_job());
+    tests::running(*node, job.id);
+    EXPECT_TRUE(node->jobs.remove(job.id));
+    EXPECT_FALSE(node->jobs.get(job.id));
+    const api::JobView queued = submit(*node, tests::endless_job());
+    EXPECT_TRUE(node->jobs.remove(queued.id));
+}
+
+TEST_P(JobService, LetsResultsExpire)
+{
+    renderer::Limits limits;
+    limits.retention_s = 1;
+    const auto node = open(limits);
+    node->jobs.start();
+    const api::JobView done = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
+    const std::string digest = tests::digest_of_picture(*node, done.id);
+    // A final job is not waited for: another one's life is the clock.
+    const api::JobView clock = submit(*node, tests::endless_job(R"(,"priority":0)"));
+    std::string etag = server::etag_of(clock);
+    while (node->jobs.get(done.id)->state == JobState::succeeded)
+        etag = server::etag_of(node->jobs.wait(clock.id, tests::kPatience, etag).value());
+    EXPECT_EQ(node->jobs.get(done.id)->state, JobState::expired);
+    EXPECT_EQ(tests::image_refusal(*node, done.id).status, 410);
+}
+
+TEST_P(JobService, ListsJobsWithWhatOnlyMemoryKnows)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView job = submit(*node, tests::endless_job());
+    tests::running(*node, job.id);
+    const std::string listed = tests::expect<std::string>(
+        node->jobs.list({.tenant = {}, .state = server::StoredState::leased, .label = {}, .cursor = {}}));
+    EXPECT_NE(listed.find(job.id), std::string::npos);
+    EXPECT_NE(listed.find("\"running\""), std::string::npos);
+}
+
+TEST_P(JobService, RefusesJobsOnceItStopsAndAnswersWhoWaits)
+{
+    const auto node = open();
+    node->jobs.start();
+    const api::JobView job = submit(*node, tests::endless_job());
+    tests::running(*node, job.id);
+    std::jthread stopper([&] { node->jobs.stop(); });
+    EXPECT_FALSE(api::is_final(node->jobs.wait(job.id, tests::kPatience)->state));
+    stopper.join();
+    EXPECT_TRUE(node->jobs.draining());
+    EXPECT_EQ(node->jobs.get(job.id)->state, JobState::queued);
+    EXPECT_EQ(node->jobs.get(job.id)->attempts, 0U);
+    const auto problem =
+        tests::refusal(*node, {.body = tests::quick_job(), .part_digests = {}, .idempotency_key = {}});
+    EXPECT_EQ(problem.status, 503);
+    EXPECT_EQ(problem.code, "draining");
+}
+
+} // namespace
