@@ -5,8 +5,7 @@
 //
 // Threads  put() from any thread; `merge` is called by one thread at a time, under the lock.
 // Memory   at most `window` results wait. A thread that runs further ahead sleeps until the oldest one has
-// come;
-//          numbers are claimed in order, so whoever holds the oldest is at work and never sleeps here.
+//          come; numbers are claimed in order, so whoever holds the oldest is at work and never sleeps here.
 // Errors   abort() wakes and releases everybody; nothing is merged after it.
 #pragma once
 

@@ -1,8 +1,7 @@
 // Interrupt: Ctrl-C and SIGTERM as a stop token instead of a dead process.
 //
 // Threads  must be made in main before any other thread, which then all leave the signals to it. The first
-// signal
-//          requests the stop; a second one ends the process at once.
+//          signal requests the stop; a second one ends the process at once.
 #pragma once
 
 #include <csignal>

@@ -2,8 +2,8 @@
 // mesh.
 //
 // Files that a scene names are looked for from the folder of the scene; what a mesh names, from the mesh's
-// folder and never above it. Errors  UserError: usage for files that cannot be read, faults (after printing
-// them all) for what they say.
+// folder and never above it.
+// Errors  UserError: usage for files that cannot be read, faults (after printing them all) for what they say.
 #pragma once
 
 #include "api/job_request.h"

@@ -1,7 +1,8 @@
 // MeshFiles: the meshes of a job, read from disk with the files that they name, imported and checked.
 //
 // Errors  faults with the pointer of the object that first names the mesh; UserError(usage) for unreadable
-// files. Cost    holds the bytes of one mesh and its companions while that mesh is imported.
+//         files.
+// Cost    holds the bytes of one mesh and its companions while that mesh is imported.
 #pragma once
 
 #include "api/job_request.h"

@@ -1,9 +1,8 @@
 // PictureDifference: how far a picture is from a reference, on linear values.
 //
-// Source  relative_rmse as the API defines `error`: sqrt(mean over pixels and channels of (x - ref)^2 /
-// (ref^2 + e)),
-//         e = (0.2 m)^2, m the mean of ref over pixels and channels: dimming both pictures does not change
-//         it.
+// Source     relative_rmse as the API defines `error`: sqrt(mean over pixels and channels of (x - ref)^2 /
+//            (ref^2 + e)), e = (0.2 m)^2, m the mean of ref over pixels and channels: dimming both pictures
+//            does not change it.
 // Precision  sums in double, in pixel order: the same pictures give the same numbers.
 #pragma once
 

@@ -1,8 +1,7 @@
 // Upload: the files that a job needs, found beside the scene and given to the service.
 //
 // Which   every mesh that the scene names by a file, and what those meshes name themselves (MTL, glTF
-// buffers): told by
-//         importing here those meshes that can name any, with the service's own importer.
+//         buffers): told by importing here those meshes that can name any, with the service's own importer.
 // Errors  faults with pointers, as for a local render; UserError for refusals of the service.
 #pragma once
 

@@ -1,15 +1,13 @@
 // Bvh: a binary tree of boxes over any primitives that have boxes; it knows nothing of what lies in them.
 //
 // Layout   children come in pairs, one cache line (float) each; a leaf is a run of `order`, at most the leaf
-// size asked
-//          for, or the primitives that nothing could tell apart.
+//          size asked for, or the primitives that nothing could tell apart.
 // Promise  depth at most kMaxBvhDepth whatever the input; the same boxes and split give the same tree on any
-// number of
-//          threads. Costs are compared in double after scaling, so coordinates up to 1e301 do not overflow.
+//          number of threads. Costs are compared in double after scaling, so coordinates up to 1e301 do not
+//          overflow.
 // Errors   build_bvh returns nothing only when `stop` was requested.
 // Source   I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", RT 2007 (binning);
-// midpoint:
-//          M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., section 4.3.1.
+//          midpoint: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., section 4.3.1.
 #pragma once
 
 #include "renderer/description/settings.h"

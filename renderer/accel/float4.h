@@ -2,8 +2,7 @@
 // vectorise elsewhere.
 //
 // Promise  every operation rounds as the scalar one does. min and max return their second operand where a NaN
-// is in
-//          play, everywhere alike.
+//          is in play, everywhere alike.
 #pragma once
 
 #include "renderer/math/vec3.h"

@@ -2,11 +2,10 @@
 // may be.
 //
 // Frame    the mesh's coordinates times a power of two, so that products of coordinates stay within float's
-// range; the
-//          direction is brought to a length near 1 by a power of two as well, so t counts in units of the
-//          kernel.
+//          range; the direction is brought to a length near 1 by a power of two as well, so t counts in units
+//          of the kernel.
 // Promise  whatever the double test can hit, the float copy meets when boxes and triangles are taken larger
-// by `lateral`.
+//          by `lateral`.
 #pragma once
 
 #include "renderer/accel/triangle_block.h"

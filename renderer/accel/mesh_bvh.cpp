@@ -1,5 +1,7 @@
 #include "renderer/accel/mesh_bvh.h"
 
+#include "renderer/math/floating_point_mode.h"
+
 #include <algorithm>
 
 namespace renderer {
@@ -31,6 +33,7 @@ Kept keep_those_with_area(const Mesh& mesh, TriangleRun run)
 std::optional<MeshBvh>
 MeshBvh::build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& pool, std::stop_token stop)
 {
+    const DefaultFloatingPoint subnormal_corners_count;
     MeshBvh built;
     const Kept kept = keep_those_with_area(mesh, run);
     built.degenerate_ = run.count - kept.triangles.size();

@@ -2,11 +2,10 @@
 //
 // Frame      object space: the mesh's own coordinates. Rays in double.
 // Precision  what is hit is decided in double, by intersect_watertight on the float corners, so a hit is a
-// pure function
-//            of (ray, triangle). Boxes and a quick first look at each triangle work in float, on a copy of
-//            the ray whose origin was first brought to the mesh's bounds, and pass whatever float cannot
-//            tell: they only save work. Hence every kind of tree, and no tree at all, gives the same hit to
-//            the last bit.
+//            pure function of (ray, triangle). Boxes and a quick first look at each triangle work in float,
+//            on a copy of the ray whose origin was first brought to the mesh's bounds, and pass whatever
+//            float cannot tell: they only save work. Hence every kind of tree, and no tree at all, gives the
+//            same hit to the last bit.
 // Ties       the least (t, primitive) wins.
 // Threads    immutable after build; rays may be traced from any number of threads.
 #pragma once
@@ -29,9 +28,8 @@ namespace renderer {
 
 struct MeshHit {
     double t;
-    std::uint32_t
-        primitive;      // triangle of the mesh, counted over the whole mesh also where a run was prepared
-    Vec3d barycentrics; // weights of its three corners
+    std::uint32_t primitive; // triangle, counted over the whole mesh also where a run was prepared
+    Vec3d barycentrics;      // weights of its three corners
 };
 
 struct TriangleRun {
@@ -71,8 +69,7 @@ private:
     std::optional<MeshHit> trace(const Ray& ray) const;
 
     WideBvh bvh_; // in scaled coordinates
-    std::vector<TriangleBlock>
-        leaves_; // the triangles' own copies of their corners, so that a test reads one place
+    std::vector<TriangleBlock> leaves_; // with copies of the corners, so that a test reads one place
     Bounds3f bounds_;
     float scale_ = 1; // power of two that brings coordinates near 1 where they are far from it
     std::uint64_t degenerate_ = 0;

@@ -1,7 +1,8 @@
 // WideBvh: a tree of boxes, four children a node, tested at once; made from a binary Bvh<float>.
 //
-// Layout   128 bytes a node: two cache lines. A child is an inner node, or a leaf: a run of the caller's
-// blocks. Cost     traversal is iterative, a fixed stack, no allocation.
+// Layout  128 bytes a node: two cache lines. A child is an inner node, or a leaf: a run of the caller's
+//         blocks.
+// Cost    traversal is iterative, a fixed stack, no allocation.
 #pragma once
 
 #include "renderer/accel/bvh.h"

@@ -1,12 +1,11 @@
 // Camera: the pinhole: from a point of the picture to the direction that is seen there.
 //
 // Units   picture points in pixels of the full picture, x to the right and y down from its top left corner,
-// so that
-//         pixel (i, j) is [i, i+1) x [j, j+1) and its centre (i + 0.5, j + 0.5); directions are unit vectors.
+//         so that pixel (i, j) is [i, i+1) x [j, j+1) and its centre (i + 0.5, j + 0.5); directions are unit
+//         vectors.
 // Frame   world, in double: a field of view of 0.01 degrees and an eye 1e8 m off keep their digits.
 // Source  the pinhole of M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", section 6.2; the
-// vertical
-//         field of view is the named one, and the aspect ratio acts on x.
+//         vertical field of view is the named one, and the aspect ratio acts on x.
 #pragma once
 
 #include "renderer/description/scene_description.h"

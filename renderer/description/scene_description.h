@@ -78,8 +78,8 @@ enum class Shading : std::uint8_t { automatic, smooth, flat }; // automatic: smo
 
 struct ObjectDescription {
     Shape shape;
-    std::optional<std::uint32_t>
-        material; // index into materials; nothing: the mesh's own, else the default diffuse
+    // Index into materials; nothing: the mesh's own, else the default diffuse.
+    std::optional<std::uint32_t> material;
     Affine3 world_from_object;
     bool visible_to_camera = true;
     Shading shading = Shading::automatic;

@@ -2,8 +2,7 @@
 //
 // Source  sRGB transfer function: IEC 61966-2-1; PNG: W3C REC-PNG-20031110.
 // Errors  encode_png throws std::runtime_error if the encoder fails (out of memory); values are clamped to
-// [0,1],
-//         non-finite ones become 0.
+//         [0,1], non-finite ones become 0.
 #pragma once
 
 #include "renderer/description/settings.h"

@@ -2,12 +2,11 @@
 // reverse.
 //
 // Promise  signed zeros, zero directions, origins on a slab plane (0 * infinity), flat boxes and point boxes
-// keep
-//          their hits. Rays that are not traceable miss.
+//          keep their hits. Rays that are not traceable miss.
 // Source   T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013 (padding of the far side); S. Woop, C.
-// Benthin,
-//          I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, section 5 (moving the origin
-//          apart for near and far planes, so that the box test forgives what the triangle test forgives).
+//          Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, section 5 (moving the
+//          origin apart for near and far planes, so that the box test forgives what the triangle test
+//          forgives).
 // Cost     construction once a ray; then 6 subtractions, 6 products and 6 comparisons a box.
 #pragma once
 

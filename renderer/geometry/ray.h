@@ -1,8 +1,9 @@
 // Ray: a half-line that is followed from t_min to t_max; the point at t is origin + t * direction.
 //
 // Units      direction may have any length but zero; t counts in its lengths, so it survives a change of
-// frame. Range      open: a hit has t_min < t < t_max. t_max may be infinite. Precision  Ray is in double, in
-// the world and in object space; kernels make their own float copy.
+//            frame.
+// Range      open: a hit has t_min < t < t_max. t_max may be infinite.
+// Precision  Ray is in double, in the world and in object space; kernels make their own float copy.
 #pragma once
 
 #include "renderer/math/vec3.h"

@@ -1,8 +1,7 @@
 // Bounds on floating-point rounding, for those who must say how far a computed value can be off.
 //
 // Source  N. Higham, "Accuracy and Stability of Numerical Algorithms", section 3.1: n roundings in a row
-// change a
-//         value by a factor within 1 +- gamma(n).
+//         change a value by a factor within 1 +- gamma(n).
 #pragma once
 
 #include "renderer/math/vec3.h"

@@ -2,9 +2,8 @@
 //
 // Frame   whatever the maker says: object space in geometry, world space in a SceneHit.
 // Source  M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., section 3.9: the bound is
-// carried
-//         with the point; no constant bias. We need far less room than it does, since points and t are in
-//         double.
+//         carried with the point; no constant bias. We need far less room than it does, since points and t
+//         are in double.
 #pragma once
 
 #include "renderer/math/vec3.h"

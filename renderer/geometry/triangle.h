@@ -2,14 +2,13 @@
 // against.
 //
 // Conventions  a ray in the triangle's plane misses; a triangle without area is never hit; edges and corners
-// belong to
-//              every triangle that has them, so a ray through a shared edge hits at least one of the two.
+//              belong to every triangle that has them, so a ray through a shared edge hits at least one of
+//              the two.
 // Range        t_min < t < t_max, where t must exceed t_min by its own rounding error: a ray that starts on
-// the
-//              triangle does not hit it. Magnitudes are to stay within the square root of the type's range.
+//              the triangle does not hit it. Magnitudes are to stay within the square root of the type's
+//              range.
 // Source       S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; error
-// of t:
-//              M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., section 3.9.6;
+//              of t: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., section 3.9.6;
 //              T. Moller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997.
 // Cost         no allocation, never throws.
 #pragma once
@@ -109,9 +108,9 @@ T lower_bound_of_t(
     return t - delta_t > least ? t - delta_t : least;
 }
 
-// In a thin triangle the weights are poorly determined along its length, and the point they make lies off the ray. This
-// moves weight between the ends of the longest edge until the point is beside the ray again; the weights stay within
-// [0, 1]. Nothing changes where the point is on the ray to rounding.
+// In a thin triangle the weights are poorly determined along its length, and the point they make lies off the
+// ray. This moves weight between the ends of the longest edge until the point is beside the ray again; the
+// weights stay within [0, 1]. Nothing changes where the point is on the ray to rounding.
 template <typename T>
 Vec3<T> draw_onto_ray(Vec3<T> weights, const Corner<T>& a, const Corner<T>& b, const Corner<T>& c)
 {

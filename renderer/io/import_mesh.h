@@ -1,12 +1,12 @@
 // import_mesh: reads a mesh file (OBJ with MTL, PLY, STL, glTF, GLB) into a Mesh, and trusts no byte of it.
 //
-// Files    the importer asks `open` for every file by the name that the file itself uses (an MTL, a buffer);
-//          nothing else is ever opened, nothing from disk or network.
-//          Names that could lead elsewhere (absolute, "..", a scheme) are never asked for.
-// Errors   faults are values with a plain sentence; never a half-read mesh. A missing MTL is a note.
-//          Throws std::bad_alloc alone. glTF goes through assimp, which hostile files may crash: services
-//          import in a process of its own.
-// Cost     linear in the file; memory a small multiple of it, bounded by `limits`.
+// Files   the importer asks `open` for every file by the name that the file itself uses (an MTL, a buffer);
+//         nothing else is ever opened, nothing from disk or network. Names that could lead elsewhere
+//         (absolute, "..", a scheme) are never asked for.
+// Errors  faults are values with a plain sentence; never a half-read mesh. A missing MTL is a note. Throws
+//         std::bad_alloc alone. glTF goes through assimp, which hostile files may crash: services import in a
+//         process of its own.
+// Cost    linear in the file; memory a small multiple of it, bounded by `limits`.
 #pragma once
 
 #include "renderer/description/limits.h"
@@ -24,8 +24,7 @@
 namespace renderer {
 
 struct ImportFault {
-    std::string
-        code; // "unknown_format", "truncated", "no_triangles", "non_finite", "index_out_of_range", ...
+    std::string code;   // "unknown_format", "truncated", "no_triangles", "index_out_of_range", ...
     std::string detail; // one sentence: what, where in the file, how to mend it
 };
 

@@ -161,9 +161,12 @@ ImportResult read_glb(std::span<const std::byte> bytes, CompanionFiles& files, c
         if (!binary && word_at(bytes, at + 4) == kBinary) binary = bytes.subspan(at + 8, size);
         at += 8 + size;
     }
-    if (auto bad = check(text_of(bytes.subspan(20, json_length)), binary, files, limits))
-        return std::move(*bad);
-    return read("glb", bytes, files, limits);
+    const auto json = bytes.subspan(20, json_length);
+    if (auto bad = check(text_of(json), binary, files, limits)) return std::move(*bad);
+    // Without a binary chunk assimp takes the first buffer for an empty one, whatever its URI holds.
+    ImportResult result = binary ? read("glb", bytes, files, limits) : read("gltf", json, files, limits);
+    if (auto* mesh = std::get_if<ImportedMesh>(&result)) mesh->format = "glb";
+    return result;
 }
 
 } // namespace renderer

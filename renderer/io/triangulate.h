@@ -1,7 +1,8 @@
 // triangulate: a polygon of a file as triangles, convex or not, so that none sticks out of its outline.
 //
 // Cost    linear for convex polygons, quadratic (at worst cubic) for others; no allocation up to four
-// corners. Source  ear clipping, Meisters 1975, on the projection along the polygon's Newell normal.
+//         corners.
+// Source  ear clipping, Meisters 1975, on the projection along the polygon's Newell normal.
 #pragma once
 
 #include "renderer/geometry/mesh.h"

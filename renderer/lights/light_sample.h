@@ -1,9 +1,9 @@
 // illuminate: what a light of no size sends to a point: from where, how far, how much.
 //
 // Units   irradiance on a surface that faces the light, W/m^2; distances in metres, infinite for directional
-// lights. Source  point: inverse square law, I/d^2; spot: the smooth step between the cones of M. Pharr et
-// al., "Physically
-//         Based Rendering", section 12.2.
+//         lights.
+// Source  point: inverse square law, I/d^2; spot: the smooth step between the cones of M. Pharr et al.,
+//         "Physically Based Rendering", section 12.2.
 #pragma once
 
 #include "renderer/color/rgb.h"

@@ -1,15 +1,14 @@
 // Bsdf: how a surface scatters light: a closed set, as eval / sample / pdf.
 //
 // Frame   local: z is the shading normal, on the viewer's side (every material is two-sided); wo and wi are
-// unit and
-//         point away from the surface.
+//         unit and point away from the surface.
 // Units   eval is f(wo, wi) |cos(wi)| in 1/sr; pdfs per steradian.
 // Source  diffuse: Lambert. phong_normalized: E. Lafortune, Y. Willems, "Using the Modified Phong Reflectance
-// Model
-//         for Physically Based Rendering", 1994: f = kd/pi + ks (n+2)/(2 pi) (R.V)^n, reciprocal, and no more
-//         energy out than in while kd + ks <= 1. phong_classic: B. Phong, 1975, as it is usually programmed:
-//         kd (N.L) + ks (R.V)^n times the irradiance on a facing surface, without 1/pi; neither reciprocal
-//         nor conserving. R = 2 (N.L) N - L; both dot products clamped at 0; nothing where N.L <= 0.
+//         Model for Physically Based Rendering", 1994: f = kd/pi + ks (n+2)/(2 pi) (R.V)^n, reciprocal, and
+//         no more energy out than in while kd + ks <= 1. phong_classic: B. Phong, 1975, as it is usually
+//         programmed: kd (N.L) + ks (R.V)^n times the irradiance on a facing surface, without 1/pi; neither
+//         reciprocal nor conserving. R = 2 (N.L) N - L; both dot products clamped at 0; nothing where N.L <=
+//         0.
 // Cost    a switch, no virtual call, no allocation.
 #pragma once
 

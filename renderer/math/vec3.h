@@ -2,7 +2,8 @@
 // which.
 //
 // Precision  Vec3d carries world space, cameras and transforms; Vec3f carries mesh-local vertices and
-// kernels. Cost       plain values, no allocation, never throws.
+//            kernels.
+// Cost       plain values, no allocation, never throws.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,7 @@
 #include "renderer/parallel/thread_pool.h"
 
+#include "renderer/math/floating_point_mode.h"
+
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -63,6 +65,7 @@ struct ThreadPool::State {
 
     void thread_main(unsigned worker)
     {
+        const DefaultFloatingPoint whatever_the_maker_had;
         std::uint64_t seen = 0;
         std::unique_lock lock(mutex);
         for (;;) {
@@ -107,6 +110,7 @@ void ThreadPool::run(std::size_t items,
                      std::stop_token stop,
                      unsigned max_workers)
 {
+    const DefaultFloatingPoint whatever_the_caller_has;
     const std::lock_guard one_caller(state_->callers);
     State::Loop loop;
     loop.items = items;

@@ -2,6 +2,7 @@
 //
 // Threads  run() may be called from any one thread at a time per pool (callers queue behind one another); the
 //          caller works along, so a pool of n has n-1 threads of its own. The body is called concurrently.
+// Numbers  bodies run in the default floating-point environment, also in a caller that has set another.
 // Errors   an exception from the body stops the loop and is thrown again by run().
 // Cost     one atomic increment an item: items should take microseconds, not nanoseconds.
 #pragma once

@@ -1,3 +1,4 @@
+#include "renderer/math/floating_point_mode.h"
 #include "renderer/math/transcendental.h"
 #include "renderer/plan/plan.h"
 #include "renderer/plan/world_bounds.h"
@@ -62,6 +63,7 @@ framing_camera(const SceneDescription& scene, std::span<const MeshFacts> meshes,
 
 AssumedScene assume_defaults(SceneDescription description, std::span<const MeshFacts> meshes, double aspect)
 {
+    const DefaultFloatingPoint whatever_the_caller_has;
     AssumedScene out{std::move(description), {}};
     SceneDescription& scene = out.description;
     if (!scene.camera) {

@@ -1,3 +1,4 @@
+#include "renderer/math/floating_point_mode.h"
 #include "renderer/plan/plan.h"
 
 namespace renderer {
@@ -17,6 +18,7 @@ Bounds3f part_bounds(const Mesh& mesh, const MeshPart& part)
 
 MeshFacts facts_of(const Mesh& mesh)
 {
+    const DefaultFloatingPoint whatever_the_caller_has;
     MeshFacts facts;
     facts.bounds = mesh.bounds();
     facts.triangles = mesh.triangles.size();

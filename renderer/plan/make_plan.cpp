@@ -1,3 +1,4 @@
+#include "renderer/math/floating_point_mode.h"
 #include "renderer/plan/budget.h"
 #include "renderer/plan/check_description.h"
 #include "renderer/plan/choices.h"
@@ -30,6 +31,7 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
                                                  const RenderSettings& settings,
                                                  const Limits& limits)
 {
+    const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     std::vector<Fault> faults = check_description(description, meshes);
     append(faults, check_settings(settings));

@@ -5,15 +5,13 @@
 // pixels are independent of one another. Pixels are those of the full picture, so a crop has the same
 // numbers.
 //
-// Units    u in [0, 1), multiples of 2^-24.
-// Limits   sample below 2^32; the sequence does not repeat before.
-// Cost     some 40 integer operations a number; no state, no tables.
-// Source   B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020 (padding of 2-D pairs); the
-// hash is
-//          N. Vegdahl's, "Building a Better LK Hash", 2021, since Burley's own is visibly biased for some
-//          seeds; Sobol's second dimension as a product with Pascal's matrix mod 2, whose structure (a
-//          Kronecker power of
-//          [[1,1],[0,1]]) needs 5 steps instead of 32.
+// Units   u in [0, 1), multiples of 2^-24.
+// Limits  sample below 2^32; the sequence does not repeat before.
+// Cost    some 40 integer operations a number; no state, no tables.
+// Source  B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020 (padding of 2-D pairs); the hash
+//         is N. Vegdahl's, "Building a Better LK Hash", 2021, since Burley's own is visibly biased for some
+//         seeds; Sobol's second dimension as a product with Pascal's matrix mod 2, whose structure (a
+//         Kronecker power of [[1,1],[0,1]]) needs 5 steps instead of 32.
 #pragma once
 
 #include <cstdint>

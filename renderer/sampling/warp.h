@@ -1,12 +1,12 @@
 // Warps: turn uniform random numbers into directions.
 //
-// Every warp comes as a pair: sample_X(u) draws, pdf_X(v) answers "how likely was v?".
-// The pair must agree: warp_test.cpp checks each one with a chi-square test.
+// Every warp comes as a pair: sample_X(u) draws, pdf_X(v) answers "how likely was v?". The pair must agree:
+// warp_test.cpp checks each one with a chi-square test.
 //
 // Units   u in [0,1)^2; directions are unit length, z up; pdfs are per steradian.
-// Source  P. Shirley, K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997;
-//         the power lobe: E. Lafortune, Y. Willems, "Using the Modified Phong Reflectance Model for
-//         Physically Based Rendering", 1994.
+// Source  P. Shirley, K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997; the power
+//         lobe: E. Lafortune, Y. Willems, "Using the Modified Phong Reflectance Model for Physically Based
+//         Rendering", 1994.
 // Cost    O(1), no allocation, no locks, never throws.
 #pragma once
 

@@ -1,4 +1,5 @@
 #include "renderer/geometry/shapes.h"
+#include "renderer/math/floating_point_mode.h"
 #include "renderer/plan/placement.h"
 #include "renderer/scene/scene.h"
 
@@ -172,6 +173,7 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      const RenderSettings& settings,
                                      ThreadPool& pool)
 {
+    const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     const BvhSplit split = settings.acceleration.split;
     Preparation made(description, plan, meshes, split, pool);

@@ -1,8 +1,7 @@
 // Options of heliographd: one table of flags, environment variables, defaults and help.
 //
 // A flag --some-name is also the environment variable HELIOGRAPH_SOME_NAME; the flag wins. Every limit is an
-// option:
-// --limit-<name with dashes>.
+// option: --limit-<name with dashes>.
 // Errors  a wrong value is an answer with exit code 2 that names the option, the value and what is allowed.
 #pragma once
 

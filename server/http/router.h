@@ -3,8 +3,7 @@
 //
 // Threads  add() before the first dispatch(), which any thread may call.
 // Errors   dispatch() is the catch site around all handlers: the log gets the exception in full, the client a
-// public
-//          sentence and the request id.
+//          public sentence and the request id.
 #pragma once
 
 #include "server/http/exchange.h"

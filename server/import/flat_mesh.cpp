@@ -42,10 +42,7 @@ class TextWriter {
 public:
     template <typename T>
     requires std::is_arithmetic_v<T>
-    void add(T value)
-    {
-        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
+    void add(T value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
     void add(renderer::Rgb color)
     {
         add(color.r);

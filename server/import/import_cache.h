@@ -3,8 +3,8 @@
 //
 // Key      the main file's digest, the extension that hinted at its format, and every name that the importer
 //          asked for with the digest that answered (or that there was none): where all those agree, the
-//          import would go the same way. The importer's version needs no place in it: the cache dies with
-//          the process, and the flat form checks it.
+//          import would go the same way. The importer's version needs no place in it: the cache dies with the
+//          process, and the flat form checks it.
 // Threads  one at a time; ImportService holds the lock.
 #pragma once
 

@@ -3,7 +3,8 @@
 //
 // An entry lives from submit (or claim) until the store knows the outcome. Whoever waits for a job waits
 // here. A job that waits beside another with the same render key gets that one's result the moment it is
-// there. Threads  every function may be called from any thread.
+// there.
+// Threads  every function may be called from any thread.
 #pragma once
 
 #include "api/problem.h"

@@ -2,8 +2,9 @@
 //
 // A finished picture is served from memory at once; this thread writes it, then its row. If the disk refuses,
 // it tries again until it works or the service stops (then the job is released, and renders again to the same
-// bytes). Threads  one of its own; every function may be called from any thread. Errors   logged here, never
-// thrown, but by collect().
+// bytes).
+// Threads  one of its own; every function may be called from any thread.
+// Errors   logged here, never thrown, but by collect().
 #pragma once
 
 #include "server/jobs/live_jobs.h"

@@ -1,7 +1,8 @@
 // Worker: takes jobs from the store one after another, runs them, and hands their outcomes to the keeper.
 //
 // Owns the render pool. The catch site around a job is here: whatever is thrown ends that job, never the
-// service. Threads  one of its own.
+// service.
+// Threads  one of its own.
 #pragma once
 
 #include "api/job_request.h"

@@ -1,14 +1,13 @@
 // BlobStore: assets and pictures by content: a file a digest, verified when written and when read.
 //
 // On disk     <folder>/assets/ab/<64 hex digits>, <folder>/results/...; a file's time of modification is its
-// last use. Durability  put() and Writer::commit() are durable when they return: temporary file, fsync,
-// rename, fsync of the
-//             folders. Temporary files that a crash left are removed at open.
+//             last use.
+// Durability  put() and Writer::commit() are durable when they return: temporary file, fsync, rename, fsync of
+//             the folders. Temporary files that a crash left are removed at open.
 // Threads     every function may be called from any thread; a Writer belongs to one thread at a time.
-// Errors      StoreError for the world's failures (storage_full told apart); a damaged blob is reported by
-// name and
-//             never served; from then on it counts as missing, so that uploading it again mends it. What is
-//             not a digest names no blob.
+// Errors      StoreError for the world's failures (storage_full told apart); a damaged blob is reported by name
+//             and never served; from then on it counts as missing, so that uploading it again mends it. What
+//             is not a digest names no blob.
 // Cost        a few hundred bytes of memory a blob; has(), size() and total_bytes() do not touch the disk.
 #pragma once
 

@@ -2,11 +2,9 @@
 // committing into its next transaction.
 //
 // Durability  run() returns after its transaction was committed. `synced`: it outlasts a power cut; else it
-// outlasts
-//             the process, and is synced with the next one that is.
+//             outlasts the process, and is synced with the next one that is.
 // Errors      what a request throws undoes that request alone and reaches its caller; a transaction that
-// fails
-//             throws StoreError to every caller in it.
+//             fails throws StoreError to every caller in it.
 // Threads     any. Cost: one fdatasync a transaction with a synced request in it, none without.
 #pragma once
 

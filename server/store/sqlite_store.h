@@ -3,16 +3,13 @@
 // so what was running is queued again, its attempts kept (and canceled where that was asked).
 //
 // Durability  a transaction in which somebody waits for durability is synced; one of workers' words alone is
-// written
-//             and synced with the next one, so the death of the process loses nothing, a power cut at most
-//             those.
+//             written and synced with the next one, so the death of the process loses nothing, a power cut at
+//             most those.
 // Errors      StoreError; a damaged database, or one of a newer version, is refused at open, with its path. A
-// commit
-//             that fails fails every request that was folded into it; the next ones are tried anew, so the
-//             store works again when the disk does.
+//             commit that fails fails every request that was folded into it; the next ones are tried anew, so
+//             the store works again when the disk does.
 // Process     one process at a time may open a file (DataFolder sees to it): SQLite before 3.51.3 can damage
-// a
-//             database when two connections write or checkpoint at the same instant.
+//             a database when two connections write or checkpoint at the same instant.
 #pragma once
 
 #include "server/store/store.h"

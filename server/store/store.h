@@ -2,19 +2,19 @@
 // conformance suite.
 //
 // Durability  submit(), cancel(), remove() and sweep() outlast a power cut when they return. What workers do
-// (claim,
-//             complete, release, fail, confirm_cancel) outlasts the death of the process, and a power cut a
-//             little later: a lost result renders again to the same bytes. Everyone reads what was written.
+//             (claim, complete, release, fail, confirm_cancel) outlasts the death of the process, and a power
+//             cut a little later: a lost result renders again to the same bytes. Everyone reads what was
+//             written.
 // Fencing     claim() raises a job's epoch; complete(), fail(), release() and renew() with an older epoch do
-// nothing
-//             and say so. A lease that ran out is still its owner's until another claim takes the job.
+//             nothing and say so. A lease that ran out is still its owner's until another claim takes the
+//             job.
 // Attempts    claim() counts one, release() takes it back, a restart or a lease that ran out does not. fail()
-// with
-//             `retry` gives up after kMaxAttempts. A job that kills its worker never gets there: who claims a
-//             job with more than kMaxAttempts attempts must fail it without starting (the job service does).
+//             with `retry` gives up after kMaxAttempts. A job that kills its worker never gets there: who
+//             claims a job with more than kMaxAttempts attempts must fail it without starting (the job
+//             service does).
 // Cancel      once cancel_requested, a job ends as canceled by whatever comes first: confirm_cancel(),
-// release(), a
-//             restart, a lease that ran out, fail() with `retry`, even complete(), whose result is not kept.
+//             release(), a restart, a lease that ran out, fail() with `retry`, even complete(), whose result
+//             is not kept.
 // Threads     every function may be called from any thread.
 // Errors      the world's failures (disk full, corrupt file) throw StoreError; everything else is a value.
 #pragma once

@@ -2,7 +2,6 @@
 #include "tests/bench/commands.h"
 
 #include <CLI/CLI.hpp>
-
 #include <exception>
 #include <iostream>
 

@@ -1,11 +1,10 @@
 // Ray sets: the same rays for every engine, cast on one mesh.
 //
-// primary   1024 x 1024 from a camera, in Morton order.
-// shadow    from each primary hit to a point light; they end at the light.
-// diffuse   a cosine-weighted bounce off each primary hit, shuffled; and once more in pixel order.
-// Frame     the mesh's own coordinates. Origins stand off by 1e-5 of the diagonal, so that every engine
-// answers the same
-//           question; directions and origins are floats.
+// primary 1024 x 1024 from a camera, in Morton order. shadow from each primary hit to a point light; they end
+// at the light. diffuse a cosine-weighted bounce off each primary hit, shuffled; and once more in pixel
+// order.
+// Frame   the mesh's own coordinates. Origins stand off by 1e-5 of the diagonal, so that every engine answers
+//         the same question; directions and origins are floats.
 #pragma once
 
 #include "renderer/accel/mesh_bvh.h"

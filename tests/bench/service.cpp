@@ -1,12 +1,9 @@
 // heliograph-bench service: what the service costs beyond the render itself.
 //
-// overhead     POST to picture of a 64x64 scene whose mesh is known, less the seconds that its report says
-// were spent
-//              preparing and rendering; beside it one fdatasync of 4 KiB in the same folder, measured in
-//              turn.
-// submissions  accepted a second from 64 clients.
-// status       GET of a job's status while every core renders, median and 99th percentile.
-// memory       resident, right after start, and after all of this.
+// overhead POST to picture of a 64x64 scene whose mesh is known, less the seconds that its report says were
+// spent preparing and rendering; beside it one fdatasync of 4 KiB in the same folder, measured in turn.
+// submissions accepted a second from 64 clients. status GET of a job's status while every core renders,
+// median and 99th percentile. memory resident, right after start, and after all of this.
 #include "tests/bench/child_service.h"
 #include "tests/bench/commands.h"
 

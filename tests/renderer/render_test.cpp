@@ -1,11 +1,19 @@
 #include "renderer/render.h"
+#include "renderer/sampling/sampler.h"
+#include "renderer/trace.h"
 #include "tests/support/render_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <bit>
 #include <limits>
+#include <set>
 #include <thread>
+#include <type_traits>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 using namespace renderer;
 using tests::digest;
@@ -139,6 +147,60 @@ TEST(Render, DropsAndCountsSamplesThatAreNotFinite)
     EXPECT_GT(result.report.numerics.non_finite_samples, 0u);
     for (const RgbSum& sum : result.film.sums)
         ASSERT_TRUE(std::isfinite(sum.r + sum.g + sum.b));
+}
+
+#if defined(__SSE2__)
+TEST(Render, GivesTheSameBitsUnderACallersFlushToZero)
+{
+    TestScene test;
+    Mesh tiny = tests::faceted_sphere(24, 12);
+    for (auto& p : tiny.positions)
+        p = p * 1e-20f * 1e-19f; // subnormal, every coordinate
+    test.meshes.push_back(tiny);
+    ObjectDescription object;
+    object.world_from_object = Affine3::scale(Vec3d{1, 1, 1} * 1e39);
+    test.description.objects.push_back(object);
+    test.settings.image.width_px = 32;
+    test.settings.image.height_px = 24;
+    test.settings.quality.samples = 2;
+    const RenderResult rendered = render_description(test);
+    const RgbSum middle = rendered.film.sums[12 * 32 + 16], corner = rendered.film.sums[0];
+    EXPECT_NE(middle, corner) << "the mesh is not seen at all";
+    const std::uint64_t as_is = tests::digest(rendered.film);
+    const unsigned before = _mm_getcsr();
+    _mm_setcsr(before | 0x8040u); // flush to zero, denormals are zero
+    const std::uint64_t flushed = tests::digest(render_description(test).film);
+    const unsigned during = _mm_getcsr();
+    _mm_setcsr(before);
+    EXPECT_EQ(flushed, as_is);
+    EXPECT_EQ(during & 0x8040u, 0x8040u) << "the caller's own mode was changed";
+}
+#endif
+
+TEST(Render, CountsNoSampleTwiceInTheLargestPicture)
+{
+    // 2^30 pixels and 2^20 samples: whatever is numbered in 32 bits would come round again.
+    TestScene test = kitchen_sink();
+    test.settings.image.width_px = test.settings.image.height_px = 32768;
+    test.settings.image.region = PixelRect{32760, 32760, 8, 8};
+    ThreadPool pool(1);
+    const tests::ReadyScene ready = tests::make_ready(test, pool);
+    const auto traced = [&](std::uint32_t x, std::uint32_t first) {
+        const WorkUnit unit{{x, 32767, 1, 1}, {first, first + 4}};
+        return trace(*ready.scene, ready.plan, 7, unit, {}).value();
+    };
+    const TracedUnit last = traced(32767, (1u << 20) - 4);
+    EXPECT_EQ(last.tally.camera_rays, 4u);
+    std::set<std::uint64_t> seen;
+    for (const std::uint32_t pixel : {0u, 4u, 16384u, 32767u})
+        for (const std::uint32_t sample : {0u, 1u << 16, (1u << 20) - 4, 1u << 31, 0xfffffff8u}) {
+            const PixelSampler sampler(7, pixel, 32767);
+            const Sample2 u = sampler.sample_2d(sample, 0);
+            seen.insert((std::uint64_t{std::bit_cast<std::uint32_t>(u.u0)} << 32) |
+                        std::bit_cast<std::uint32_t>(u.u1));
+        }
+    EXPECT_EQ(seen.size(), 20u);
+    static_assert(std::is_same_v<decltype(RayTally::camera_rays), std::uint64_t>);
 }
 
 TEST(Render, RendersThinAndSinglePixelPictures)

@@ -1,8 +1,7 @@
 // Chi-square test of directions drawn against the density that claims to describe them.
 //
 // Source  the protocol of pbrt and Mitsuba: bins of equal angles, neighbours merged until at least 5 are
-// expected,
-//         densities integrated over each bin, Sidak's correction for the number of tests.
+//         expected, densities integrated over each bin, Sidak's correction for the number of tests.
 #pragma once
 
 #include "renderer/math/vec3.h"

@@ -1,12 +1,10 @@
 // ConnectionStream: one connection as httplib reads and writes it, with a deadline on everything.
 //
 // Reading  the head block is collected here, whole and bounded; of the body httplib is given exactly what the
-// head
-//          announced, chunked bodies taken apart and put together anew. `100 Continue` is sent when, and only
-//          when, a handler begins to read the body.
+//          head announced, chunked bodies taken apart and put together anew. `100 Continue` is sent when, and
+//          only when, a handler begins to read the body.
 // Writing  never blocks longer than `idle_write`, nor below `min_rate` for longer than `grace`. An answer
-// that is sent
-//          before the request's body was read says `Connection: close`.
+//          that is sent before the request's body was read says `Connection: close`.
 // Threads  one.
 #pragma once
 

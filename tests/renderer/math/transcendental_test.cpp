@@ -93,7 +93,9 @@ TEST(Log2, IsWithinThreeUlpAndExactAtPowersOfTwo)
         const long double want = std::log2(static_cast<long double>(x));
         ASSERT_LE(ulps(renderer::log2(x), want), 3) << x;
         const double near_one = 1 + (spread(i) - 0.5) / 8;
-        ASSERT_NEAR(renderer::log2(near_one), static_cast<double>(std::log2(static_cast<long double>(near_one))), 1e-16);
+        ASSERT_NEAR(renderer::log2(near_one),
+                    static_cast<double>(std::log2(static_cast<long double>(near_one))),
+                    1e-16);
     }
     EXPECT_EQ(renderer::log2(0), -INFINITY);
     EXPECT_EQ(renderer::log2(INFINITY), INFINITY);

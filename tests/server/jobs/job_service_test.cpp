@@ -78,6 +78,26 @@ TEST_P(JobService, FailsAJobWhoseMeshIsBrokenAndRefusesTheNext)
     EXPECT_EQ(refused.errors, failed.error->errors);
 }
 
+TEST_P(JobService, FailsAJobWithSamplesThatAreNotFiniteWhereItSaysSo)
+{
+    const auto node = open();
+    node->jobs.start();
+    // The brightest light there is, a micron away: more than a float holds.
+    const std::string scene =
+        R"({"scene":{"objects":[{"shape":"sphere","radius":1e-6}],)"
+        R"("lights":[{"type":"point","position":[0,2e-6,0],"intensity":[1e30,1e30,1e30]}]},)"
+        R"("image":{"width":32,"height":24},"quality":{"samples":2})";
+    const api::JobView counted = tests::succeeded(*node, submit(*node, scene + "}").id);
+    const std::string report = tests::expect<std::string>(node->jobs.report(counted.id));
+    EXPECT_EQ(report.find(R"("non_finite_samples":0)"), std::string::npos) << report;
+    const api::JobView failed =
+        tests::finished(*node, submit(*node, scene + R"(,"fail_on":["non_finite"]})").id);
+    ASSERT_EQ(failed.state, JobState::failed);
+    ASSERT_TRUE(failed.error);
+    EXPECT_EQ(failed.error->code, "non_finite");
+    EXPECT_EQ(tests::image_refusal(*node, failed.id).status, 409);
+}
+
 TEST_P(JobService, RefusesWhatCannotBeRead)
 {
     const auto node = open();
