@@ -6,6 +6,7 @@
 #include "server/http/guard/guarded_server.h"
 #include "server/http/spelling.h"
 
+#include <memory>
 #include <stop_token>
 
 namespace server {
@@ -83,18 +84,18 @@ void AssetHandlers::get(Exchange& exchange)
 {
     const std::string& digest = exchange.path.at("digest");
     if (!is_digest(digest)) return reply_problem(exchange, no_such_asset(digest));
-    Payload payload{nullptr, 0, digest, "application/octet-stream"};
+    Payload payload{{}, 0, digest, "application/octet-stream"};
     if (exchange.request.method == "HEAD") {
         const auto size = blobs_.size(kAsset, digest);
         if (!size) return reply_problem(exchange, no_such_asset(digest));
         payload.size = *size;
+        blobs_.touch(kAsset, digest);
     } else {
-        auto bytes = blobs_.read(kAsset, digest);
-        if (!bytes) return reply_problem(exchange, no_such_asset(digest));
-        payload.size = bytes->size();
-        payload.bytes = std::make_shared<const std::vector<std::byte>>(*std::move(bytes));
+        const std::shared_ptr<BlobReader> reader = blobs_.open(kAsset, digest);
+        if (!reader) return reply_problem(exchange, no_such_asset(digest));
+        payload.size = reader->size();
+        payload.source = [reader](std::uint64_t offset) { return reader->at(offset); };
     }
-    blobs_.touch(kAsset, digest);
     exchange.response.set_header("Cache-Control", "private, immutable");
     exchange.response.set_header("Content-Disposition", "attachment");
     reply_payload(exchange, payload);

@@ -17,18 +17,18 @@ std::string quoted(const std::string& etag)
     return '"' + etag + '"';
 }
 
-// The answer's bytes from `first`, straight from the shared vector: no copy of a large picture is made.
+// The answer's bytes from `first`, straight from their source: nothing large is copied or held.
 void give_bytes(httplib::Response& response, const Payload& payload, std::uint64_t first, std::uint64_t count)
 {
     if (count == 0) return response.set_content("", payload.content_type);
-    const auto bytes = payload.bytes;
+    if (payload.source) payload.source(first); // what is damaged here can still be said with a status
     response.set_content_provider(
         static_cast<std::size_t>(count),
         payload.content_type,
-        [bytes, first](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-            if (!bytes) return false;
-            const auto* const data = reinterpret_cast<const char*>(bytes->data());
-            return sink.write(data + first + offset, length);
+        [source = payload.source, first](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+            if (!source) return false;
+            const std::span<const std::byte> bytes = source(first + offset);
+            return sink.write(reinterpret_cast<const char*>(bytes.data()), std::min(length, bytes.size()));
         });
 }
 

@@ -6,11 +6,12 @@
 #include <httplib.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <map>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
 namespace server {
 
@@ -30,7 +31,9 @@ struct Exchange {
 
 // Bytes with a name of their own: a picture or an asset.
 struct Payload {
-    std::shared_ptr<const std::vector<std::byte>> bytes; // null: known by size alone, for HEAD
+    // The bytes from an offset on, as many as are at hand, but one at least; good until the next call. Throws
+    // StoreError. Empty for HEAD.
+    std::function<std::span<const std::byte>(std::uint64_t offset)> source;
     std::uint64_t size = 0;
     std::string digest; // "sha256:<hex>"
     std::string content_type;
@@ -40,7 +43,7 @@ void reply_json(Exchange& exchange, int status, const std::string& json);
 // With the request id filled in, and Retry-After where trying again may help.
 void reply_problem(Exchange& exchange, api::ProblemDetails problem, int retry_after_s = 1);
 // 200, 206, 304 or 416, with ETag, Repr-Digest and Accept-Ranges: If-None-Match, Range and If-Range are
-// honoured.
+// honoured. A source that throws at the first byte makes this throw; later, it cuts the answer off.
 void reply_payload(Exchange& exchange, const Payload& payload);
 // 304 if the client knows this state already, else 200 with the JSON; `etag` comes without quotes.
 void reply_json_with_etag(Exchange& exchange, const std::string& json, const std::string& etag);

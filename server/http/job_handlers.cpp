@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 
 namespace server {
 
@@ -214,7 +215,10 @@ void JobHandlers::reply_image(Exchange& exchange, const std::string& id)
     response.set_header("Link", std::string("<") + path_of(id) + "/report>; rel=\"describedby\"");
     const std::string timing = view ? server_timing(*view) : std::string();
     if (!timing.empty()) response.set_header("Server-Timing", timing);
-    reply_payload(exchange, {picture.png, picture.png->size(), picture.digest, "image/png"});
+    const auto from = [png = picture.png](std::uint64_t offset) {
+        return std::span<const std::byte>(*png).subspan(static_cast<std::size_t>(offset));
+    };
+    reply_payload(exchange, {from, picture.png->size(), picture.digest, "image/png"});
 }
 
 void JobHandlers::report(Exchange& exchange)

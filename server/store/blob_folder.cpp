@@ -96,12 +96,21 @@ void BlobFolder::sync(std::string_view digest) const
     sync_folder(file.parent_path());
 }
 
+std::optional<FileDescriptor> BlobFolder::open(std::string_view digest) const
+{
+    const std::filesystem::path file = path(digest);
+    FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+    if (!fd && errno == ENOENT) return std::nullopt;
+    if (!fd) throw_io_error("open", file, errno);
+    return fd;
+}
+
 std::optional<std::vector<std::byte>> BlobFolder::read(std::string_view digest) const
 {
     const std::filesystem::path file = path(digest);
-    const FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-    if (!fd && errno == ENOENT) return std::nullopt;
-    if (!fd) throw_io_error("open", file, errno);
+    const std::optional<FileDescriptor> opened = open(digest);
+    if (!opened) return std::nullopt;
+    const FileDescriptor& fd = *opened;
     struct stat status {};
     if (::fstat(fd.get(), &status) != 0) throw_io_error("stat", file, errno);
     std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));

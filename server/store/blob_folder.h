@@ -30,6 +30,7 @@ public:
     void adopt(const std::filesystem::path& temporary, std::string_view digest) const;
     // Makes a file that was written without being synced last.
     void sync(std::string_view digest) const;
+    std::optional<FileDescriptor> open(std::string_view digest) const; // nothing if it is not there
     // The file's bytes; nothing if it is not there.
     std::optional<std::vector<std::byte>> read(std::string_view digest) const;
     void mark_used(std::string_view digest) const;

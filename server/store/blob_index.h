@@ -4,8 +4,11 @@
 // Cost     every function is O(1) but for digests().
 #pragma once
 
+#include "server/store/blob_reader.h"
+
 #include <cstdint>
 #include <list>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -17,8 +20,9 @@ class BlobIndex {
 public:
     struct Blob {
         std::uint64_t bytes = 0;
-        bool synced = false;  // known to outlast a power cut
-        bool damaged = false; // found not to be what its name says
+        bool synced = false;                      // known to outlast a power cut
+        bool damaged = false;                     // found not to be what its name says
+        std::shared_ptr<const BlobProof> proof{}; // once it was opened to be read in pieces
     };
 
     // As the most recently used; replaces what was there.

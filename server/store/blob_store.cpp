@@ -34,6 +34,19 @@ struct BlobStore::State {
     {
     }
     Shelf& shelf(Kind kind) { return kind == Kind::asset ? assets : results; }
+
+    StoreError damage(const Shelf& shelf, std::string_view digest) const
+    {
+        return {std::string(shelf.name) + ' ' + std::string(digest) + " is damaged on disk (" +
+                    shelf.folder.path(digest).string() + "): its bytes are not those of its digest",
+                false};
+    }
+    // Gone since it was looked up, or taken away behind our back.
+    void forget_if_gone(Shelf& shelf, std::string_view digest)
+    {
+        const std::lock_guard lock(mutex);
+        if (::access(shelf.folder.path(digest).c_str(), F_OK) != 0) shelf.index.remove(digest);
+    }
 };
 
 // Streams into a temporary file and hashes on the way.
@@ -159,22 +172,54 @@ std::optional<std::vector<std::byte>> BlobStore::read(Kind kind, std::string_vie
         if (shelf.index.find(digest) == nullptr) return std::nullopt;
     }
     std::optional<std::vector<std::byte>> bytes = shelf.folder.read(digest);
-    const bool sound = bytes && digest_of(std::span<const std::byte>(*bytes)) == digest;
-    const std::lock_guard lock(state_->mutex);
     if (!bytes) {
-        // Gone since, or taken away behind our back.
-        if (::access(shelf.folder.path(digest).c_str(), F_OK) != 0) shelf.index.remove(digest);
+        state_->forget_if_gone(shelf, digest);
         return std::nullopt;
     }
+    const bool sound = digest_of(std::span<const std::byte>(*bytes)) == digest;
+    const std::lock_guard lock(state_->mutex);
     if (!sound) {
         if (BlobIndex::Blob* blob = shelf.index.find(digest)) blob->damaged = true;
-        throw StoreError(std::string(shelf.name) + ' ' + std::string(digest) + " is damaged on disk (" +
-                             shelf.folder.path(digest).string() + "): its bytes are not those of its digest",
-                         false);
+        throw state_->damage(shelf, digest);
     }
     shelf.index.use(digest);
     shelf.folder.mark_used(digest);
     return bytes;
+}
+
+std::unique_ptr<BlobReader> BlobStore::open(Kind kind, std::string_view digest)
+{
+    Shelf& shelf = state_->shelf(kind);
+    std::shared_ptr<const BlobProof> proof;
+    {
+        const std::lock_guard lock(state_->mutex);
+        const BlobIndex::Blob* blob = shelf.index.find(digest);
+        if (blob == nullptr) return nullptr;
+        if (!blob->damaged) proof = blob->proof;
+    }
+    std::optional<FileDescriptor> file = shelf.folder.open(digest);
+    if (!file) {
+        state_->forget_if_gone(shelf, digest);
+        return nullptr;
+    }
+    if (!proof) {
+        proof = prove_blob(*file, shelf.folder.path(digest), digest);
+        const std::lock_guard lock(state_->mutex);
+        if (BlobIndex::Blob* blob = shelf.index.find(digest)) {
+            blob->damaged = proof == nullptr;
+            blob->proof = proof;
+        }
+        if (!proof) throw state_->damage(shelf, digest);
+    }
+    auto damaged = [state = state_.get(), &shelf, name = std::string(digest), proof] {
+        const std::lock_guard lock(state->mutex);
+        BlobIndex::Blob* blob = shelf.index.find(name);
+        if (blob != nullptr && blob->proof == proof) blob->damaged = true; // else it was uploaded again
+        return state->damage(shelf, name);
+    };
+    touch(kind, digest);
+    return std::make_unique<BlobReader>(
+        *std::move(file), shelf.folder.path(digest), std::move(proof), std::move(damaged));
 }
 
 std::filesystem::path BlobStore::path(Kind kind, std::string_view digest) const

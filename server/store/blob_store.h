@@ -11,6 +11,7 @@
 // Cost        a few hundred bytes of memory a blob; has(), size() and total_bytes() do not touch the disk.
 #pragma once
 
+#include "server/store/blob_reader.h"
 #include "server/store/store.h"
 
 #include <cstddef>
@@ -53,6 +54,8 @@ public:
     std::optional<std::uint64_t> size(Kind kind, std::string_view digest) const;
     // The bytes, verified against the digest; nothing if there is no such blob.
     std::optional<std::vector<std::byte>> read(Kind kind, std::string_view digest);
+    // The same a piece at a time; null if there is no such blob. It must not outlive this store.
+    std::unique_ptr<BlobReader> open(Kind kind, std::string_view digest);
     // Path for handing to the importer as an open file descriptor; verified by the caller who reads it. Empty
     // if the digest is none; the file need not exist.
     std::filesystem::path path(Kind kind, std::string_view digest) const;

@@ -41,16 +41,21 @@ void Sha256::append(std::span<const std::byte> bytes)
     require(EVP_DigestUpdate(context_->evp, bytes.data(), bytes.size()));
 }
 
+Sha256::Raw Sha256::finish_raw()
+{
+    Raw digest{};
+    unsigned size = 0;
+    require(EVP_DigestFinal_ex(context_->evp, reinterpret_cast<unsigned char*>(digest.data()), &size));
+    return digest;
+}
+
 std::string Sha256::finish()
 {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned size = 0;
-    require(EVP_DigestFinal_ex(context_->evp, digest.data(), &size));
     static constexpr char digits[] = "0123456789abcdef";
     std::string text(kPrefix);
-    for (unsigned i = 0; i < size; ++i) {
-        text += digits[digest[i] >> 4];
-        text += digits[digest[i] & 15];
+    for (const std::byte byte : finish_raw()) {
+        text += digits[std::to_integer<unsigned>(byte) >> 4];
+        text += digits[std::to_integer<unsigned>(byte) & 15];
     }
     return text;
 }

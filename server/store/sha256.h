@@ -3,6 +3,7 @@
 // Errors  std::runtime_error if the crypto library refuses (out of memory).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -18,7 +19,10 @@ public:
     Sha256& operator=(const Sha256&) = delete;
 
     void append(std::span<const std::byte> bytes);
-    std::string finish(); // "sha256:" and 64 lower-case hex digits; call once
+    // Call one of them, once.
+    using Raw = std::array<std::byte, 32>;
+    Raw finish_raw();
+    std::string finish(); // "sha256:" and 64 lower-case hex digits
 
 private:
     struct Context;

@@ -227,10 +227,15 @@ bool GuardedServer::serve_one(ConnectionStream& stream, const std::string& block
         return false;
     }
     stream.begin(head);
-    bool closed = false;
-    const bool served = process_request(
-        stream, last, closed, [&](httplib::Request& request) { give_headers(head, stream, request); });
-    log_request(stream, head, since);
+    bool closed = false, served = false;
+    try {
+        served = process_request(
+            stream, last, closed, [&](httplib::Request& request) { give_headers(head, stream, request); });
+    } catch (const std::exception& error) { // the source of a body: its head has gone, so it is cut off
+        log_.write(
+            LogLevel::error, "answer_cut_off", {{"what", error.what()}, {"request_id", head.request_id}});
+    }
+    log_request(stream, head, served, since);
     if (!stream.body_complete() && !stream.write_failed()) stream.linger();
     return served && !closed && !stream.write_failed() && stream.body_complete();
 }
@@ -261,11 +266,12 @@ void GuardedServer::refuse(ConnectionStream& stream, const RequestHead& head, co
         "Content-Type: " + kProblemType + "\r\nX-Content-Type-Options: nosniff\r\n" + kRequestId + ": " +
         shown.request_id + "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
     if (stream.write(answer.data(), answer.size()) > 0) stream.linger();
-    log_request(stream, shown, since);
+    log_request(stream, shown, true, since);
 }
 
 void GuardedServer::log_request(const ConnectionStream& stream,
                                 const RequestHead& head,
+                                bool served,
                                 std::chrono::steady_clock::time_point since) const
 {
     std::string address;
@@ -281,7 +287,7 @@ void GuardedServer::log_request(const ConnectionStream& stream,
                 {"ms", ms},
                 {"bytes", static_cast<std::int64_t>(stream.bytes_written())},
                 {"remote", address},
-                {"complete", !stream.write_failed()},
+                {"complete", served && !stream.write_failed()},
                 {"request_id", head.request_id}});
 }
 

@@ -54,6 +54,7 @@ private:
     void give_headers(const RequestHead& head, ConnectionStream& stream, httplib::Request& request) const;
     void log_request(const ConnectionStream& stream,
                      const RequestHead& head,
+                     bool served,
                      std::chrono::steady_clock::time_point since) const;
 
     GuardOptions options_;

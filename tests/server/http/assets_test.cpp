@@ -1,8 +1,13 @@
+#include "server/store/blob_reader.h"
 #include "tests/server/http/live_service.h"
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -105,6 +110,78 @@ TEST(Assets, AreHadWholeInPartOrNotAtAll)
     EXPECT_EQ(head.header("etag"), etag);
     EXPECT_EQ(fetch(service.http.port(), "HEAD", path_of("else")).status, 404);
     EXPECT_EQ(code_of(service.get(path_of("else"))), "not_found");
+}
+
+void flip_a_byte(const std::filesystem::path& file, std::uint64_t offset)
+{
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekg(static_cast<std::streamoff>(offset));
+    const char was = static_cast<char>(stream.get());
+    stream.seekp(static_cast<std::streamoff>(offset));
+    stream.put(static_cast<char>(was ^ 1));
+}
+
+TEST(Assets, AreBrokenOffBeforeTheFirstByteThatIsDamaged)
+{
+    const LiveService service;
+    const std::string big(3 * server::kBlobPiece, 'x'), path = path_of(big);
+    put(service, path, big);
+    EXPECT_TRUE(service.get(path).body == big);
+    flip_a_byte(service.blobs.path(server::BlobStore::Kind::asset, server::digest_of(big)), big.size() - 1);
+
+    RawConnection connection(service.http.port());
+    connection.send("GET " + path + " HTTP/1.1\r\nHost: a\r\n\r\n");
+    EXPECT_THROW(connection.read(), std::runtime_error); // told its length, and ended early
+    EXPECT_TRUE(connection.wait_closed());
+    EXPECT_EQ(code_of(service.get(path)), "internal"); // known now, before there is a head
+    EXPECT_EQ(fetch(service.http.port(), "HEAD", path).status, 404);
+    EXPECT_EQ(put(service, path, big).status, 201);
+    EXPECT_TRUE(service.get(path).body == big);
+}
+
+TEST(Assets, AreRefusedInPartWhereThePartIsDamaged)
+{
+    const LiveService service;
+    const std::string big(3 * server::kBlobPiece, 'x'), path = path_of(big);
+    put(service, path, big);
+    EXPECT_EQ(service.get(path, {{"Range", "bytes=1-5"}}).status, 206);
+    flip_a_byte(service.blobs.path(server::BlobStore::Kind::asset, server::digest_of(big)),
+                server::kBlobPiece + 9);
+    EXPECT_EQ(service.get(path, {{"Range", "bytes=1-5"}}).body, "xxxxx");
+    const std::string around =
+        std::to_string(server::kBlobPiece + 5) + "-" + std::to_string(2 * server::kBlobPiece);
+    EXPECT_EQ(code_of(service.get(path, {{"Range", "bytes=" + around}})), "internal");
+}
+
+std::uint64_t peak_memory_kib()
+{
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind("VmHWM:", 0) == 0) return std::stoull(line.substr(6));
+    return 0;
+}
+
+TEST(Assets, AreSentWithoutBeingHeldInMemory)
+{
+    LiveService service;
+    constexpr std::size_t kMiB = 1 << 20, kSize = 96 * kMiB;
+    const auto writer = service.blobs.write(server::BlobStore::Kind::asset);
+    const std::vector<std::byte> chunk(kMiB, std::byte{'x'});
+    for (std::size_t at = 0; at < kSize; at += kMiB)
+        writer->append(chunk);
+    const std::string path = "/v1/assets/" + writer->digest();
+    writer->commit();
+    std::ofstream("/proc/self/clear_refs") << "5"; // the peak begins anew
+    const std::uint64_t before = peak_memory_kib();
+    for (const std::string range : {"", "Range: bytes=1-\r\n"}) {
+        RawConnection connection(service.http.port());
+        connection.send("GET " + path + " HTTP/1.1\r\nHost: a\r\nConnection: close\r\n" + range + "\r\n");
+        const auto head = connection.read_head();
+        ASSERT_TRUE(head);
+        EXPECT_EQ(head->header("content-length"), std::to_string(kSize - (range.empty() ? 0 : 1)));
+        EXPECT_TRUE(connection.wait_closed());
+    }
+    EXPECT_LT(peak_memory_kib() - before, kSize / 1024 / 4);
 }
 
 TEST(Assets, OverTheLimitAreRefusedWithItsNameHoweverTheyCome)
