@@ -76,7 +76,8 @@ std::variant<Submission, api::ProblemDetails> read_submission(const SubmitWords&
                 .render_key = submission.sharing.render_key,
                 .asset_digests = asset_digests_of(request),
                 .priority = request.priority,
-                .labels = request.labels};
+                .labels = request.labels,
+                .no_cache = words.no_cache};
     out.allow_reuse = may_reuse_stored(submission.sharing);
     out.queue_limit = limits.queue_jobs;
     out.now_ms = unix_ms();

@@ -111,7 +111,7 @@ void Worker::attempt(const Task& task)
     const auto& request = std::get<api::JobRequest>(read);
 
     const Sharing sharing =
-        rooms_.live.describe(record.id, sharing_of(request, record.spec.render_key, false));
+        rooms_.live.describe(record.id, sharing_of(request, record.spec.render_key, record.spec.no_cache));
     if (end_with_known_result(task, sharing)) return;
     run_request(task, request);
 }

@@ -9,7 +9,8 @@ namespace {
 const std::string kShortColumns =
     "j.seq, j.id, j.tenant, j.state, j.priority, j.epoch, j.attempts, j.cancel_requested, j.reused, "
     "j.created_ms, "
-    "j.started_ms, j.finished_ms, j.render_key, j.error_json, r.image_digest, r.samples, r.reusable";
+    "j.started_ms, j.finished_ms, j.render_key, j.error_json, r.image_digest, r.samples, r.reusable, "
+    "j.no_cache";
 const std::string kFromJobs = " FROM jobs j LEFT JOIN results r ON r.job = j.seq";
 const std::string kWholeJob = "SELECT " + kShortColumns + ", r.report_json, r.scene_json, q.request_json" +
                               kFromJobs + " JOIN requests q ON q.job = j.seq";
@@ -38,6 +39,7 @@ JobRow short_row(const SqliteStatement& row)
     record.finished_ms = row.optional_integer(11);
     record.spec.render_key = row.text(12);
     record.error_json = row.text(13);
+    record.spec.no_cache = row.integer(17) != 0;
     if (row.is_null(14)) return job;
     record.result.emplace();
     record.result->image_digest = row.text(14);
@@ -49,10 +51,10 @@ JobRow short_row(const SqliteStatement& row)
 void add_long_texts(JobRecord& record, const SqliteStatement& row)
 {
     if (record.result) {
-        record.result->report_json = row.text(17);
-        record.result->scene_json = row.text(18);
+        record.result->report_json = row.text(18);
+        record.result->scene_json = row.text(19);
     }
-    record.spec.request_json = row.text(19);
+    record.spec.request_json = row.text(20);
 }
 
 void add_labels_and_assets(SqliteConnection& db, JobRow& job)

@@ -3,11 +3,13 @@
 #include "server/store/file_io.h"
 #include "server/store/store.h"
 
+#include <array>
+
 namespace server {
 
 namespace {
 
-constexpr std::int64_t kSchemaVersion = 1;
+constexpr std::int64_t kSchemaVersion = 2;
 constexpr std::int64_t kApplicationId = 0x48656C69; // "Heli"
 
 // `seq` is the order of submission (never a clock) and never used twice. `state` is StoredState's number. The
@@ -27,7 +29,8 @@ CREATE TABLE jobs(
     started_ms INTEGER,
     finished_ms INTEGER, -- if and only if the state is final
     render_key TEXT NOT NULL,
-    error_json TEXT NOT NULL DEFAULT ''
+    error_json TEXT NOT NULL DEFAULT '',
+    no_cache INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 CREATE INDEX jobs_waiting ON jobs(priority DESC, seq) WHERE state = 0;
 CREATE INDEX jobs_open ON jobs(state) WHERE state IN (0, 1);
@@ -77,6 +80,11 @@ CREATE INDEX idempotency_keys_of_job ON idempotency_keys(job);
 CREATE INDEX idempotency_keys_by_age ON idempotency_keys(created_ms);
 )sql";
 
+// What each version added to the one before: the first is from 1 to 2.
+constexpr std::array<const char*, kSchemaVersion - 1> kSteps{
+    "ALTER TABLE jobs ADD COLUMN no_cache INTEGER NOT NULL DEFAULT 0",
+};
+
 // No mmap_size: an I/O error in a mapped page would be a signal.
 constexpr const char* kSettings =
     "PRAGMA busy_timeout=5000; PRAGMA foreign_keys=ON; PRAGMA mmap_size=0;"
@@ -89,6 +97,11 @@ void check_pages(SqliteConnection& db)
     if (answer != "ok") throw StoreError("quick_check: " + answer, false);
 }
 
+void set_version(SqliteConnection& db)
+{
+    db.execute(("PRAGMA user_version=" + std::to_string(kSchemaVersion)).c_str());
+}
+
 void migrate(SqliteConnection& db)
 {
     const std::int64_t version = db.integer("PRAGMA user_version");
@@ -97,7 +110,7 @@ void migrate(SqliteConnection& db)
         db.execute("BEGIN IMMEDIATE");
         db.execute(kSchema);
         db.execute(("PRAGMA application_id=" + std::to_string(kApplicationId)).c_str());
-        db.execute(("PRAGMA user_version=" + std::to_string(kSchemaVersion)).c_str());
+        set_version(db);
         db.execute("COMMIT");
         return;
     }
@@ -107,6 +120,13 @@ void migrate(SqliteConnection& db)
         throw StoreError("it has version " + std::to_string(version) + ", this program knows " +
                              std::to_string(kSchemaVersion) + ": start the newer program",
                          false);
+    if (version < 1) throw StoreError("it has no version", false);
+    if (version == kSchemaVersion) return;
+    db.execute("BEGIN IMMEDIATE");
+    for (auto step = static_cast<std::size_t>(version - 1); step < kSteps.size(); ++step)
+        db.execute(kSteps[step]);
+    set_version(db);
+    db.execute("COMMIT");
 }
 
 void void_leases(SqliteConnection& db, std::int64_t now_ms)

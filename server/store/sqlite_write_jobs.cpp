@@ -5,8 +5,9 @@ namespace server {
 
 std::int64_t insert_job(SqliteConnection& db, const JobRecord& job)
 {
-    db.prepare("INSERT INTO jobs(id, tenant, state, priority, reused, created_ms, finished_ms, render_key) "
-               "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
+    db.prepare("INSERT INTO jobs(id, tenant, state, priority, reused, created_ms, finished_ms, render_key, "
+               "no_cache) "
+               "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)")
         .bind(job.id,
               job.tenant,
               static_cast<std::int64_t>(job.state),
@@ -14,7 +15,8 @@ std::int64_t insert_job(SqliteConnection& db, const JobRecord& job)
               std::int64_t{job.reused},
               job.created_ms,
               job.finished_ms,
-              job.spec.render_key)
+              job.spec.render_key,
+              std::int64_t{job.spec.no_cache})
         .run();
     const std::int64_t sequence = db.last_row();
     db.prepare("INSERT INTO requests(job, request_json) VALUES (?1, ?2)")

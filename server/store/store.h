@@ -53,6 +53,7 @@ struct JobSpec {
     std::vector<std::string> asset_digests; // in use while the job is not final
     int priority = 50;
     std::map<std::string, std::string> labels;
+    bool no_cache = false; // takes no other job's result, at no time
 };
 
 struct JobResult {

@@ -107,6 +107,24 @@ TEST_P(JobCrash, GivesUpOnAJobThatKillsItsWorker)
     tests::succeeded(*node, submit(*node, tests::quick_job("", 7)).id);
 }
 
+TEST_P(JobCrash, RendersAfterARestartWhatNoCacheAskedFor)
+{
+    std::string id;
+    {
+        const auto node = open();
+        node->jobs.start();
+        tests::succeeded(*node, submit(*node, tests::quick_job()).id);
+        node->jobs.stop();
+    }
+    {
+        const auto node = open(); // no worker: it dies with the job in the queue
+        id = submit(*node, tests::quick_job(), true).id;
+    }
+    const auto node = open();
+    node->jobs.start();
+    EXPECT_FALSE(tests::succeeded(*node, id).reused);
+}
+
 TEST_P(JobCrash, CancelsAfterARestartWhatWasToBeCanceled)
 {
     std::string id;

@@ -162,12 +162,35 @@ TEST(SqliteStore, RefusesADamagedFileByName)
     EXPECT_NE(refusal_of(folder.path() / "none" / "jobs.sqlite").find("none/jobs.sqlite"), std::string::npos);
 }
 
+TEST(SqliteStore, TakesUpADatabaseOfTheFirstVersion)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "jobs.sqlite";
+    std::string id;
+    {
+        const auto store = open_sqlite_store(file);
+        id = store->submit(a_request("old")).job.id;
+    }
+    {
+        SqliteConnection db(file, SqliteConnection::Open::existing);
+        db.execute("ALTER TABLE jobs DROP COLUMN no_cache; PRAGMA user_version=1;");
+    }
+    auto request = a_request("new");
+    request.spec.no_cache = true;
+    for (int start = 0; start < 2; ++start) {
+        const auto store = open_sqlite_store(file);
+        EXPECT_EQ(store->get("alice", id)->spec.request_json, a_request("old").spec.request_json);
+        EXPECT_FALSE(store->get("alice", id)->spec.no_cache);
+        EXPECT_TRUE(store->get("alice", store->submit(request).job.id)->spec.no_cache);
+    }
+}
+
 TEST(SqliteStore, RefusesANewerVersionAndAnotherProgramsDatabase)
 {
     const TempFolder folder;
     const auto file = folder.path() / "jobs.sqlite";
     open_sqlite_store(file);
-    SqliteConnection(file, SqliteConnection::Open::existing).execute("PRAGMA user_version=2");
+    SqliteConnection(file, SqliteConnection::Open::existing).execute("PRAGMA user_version=1000");
     EXPECT_NE(refusal_of(file).find("newer program"), std::string::npos) << refusal_of(file);
 
     const auto other = folder.path() / "other.sqlite";

@@ -41,6 +41,17 @@ TEST_P(StoreQueue, GivesBackWhatWasSubmitted)
     }
 }
 
+TEST_P(StoreQueue, RemembersThatAJobTakesNoOthersResult)
+{
+    auto request = a_request("alone");
+    request.spec.no_cache = true;
+    const server::JobRecord alone = store->submit(request).job;
+    EXPECT_TRUE(alone.spec.no_cache);
+    EXPECT_TRUE(get(alone.id).spec.no_cache);
+    EXPECT_TRUE(store->list({.tenant = "alice"}).jobs.at(0).spec.no_cache);
+    EXPECT_FALSE(get(submit("other").id).spec.no_cache);
+}
+
 TEST_P(StoreQueue, LetsTheCallerNameAJobOnce)
 {
     auto request = a_request("named");
