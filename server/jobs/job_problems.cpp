@@ -93,13 +93,24 @@ api::ProblemDetails expired_problem(const JobId& id)
                    false);
 }
 
-api::ProblemDetails damaged_problem(const JobId& id)
+api::ProblemDetails renders_again_problem(const JobId& id)
+{
+    return problem(
+        504,
+        "still_running",
+        "the stored picture of job " + id +
+            " was lost or damaged, so the job is queued and renders again; ask again, or wait with "
+            "Prefer: wait=60",
+        true);
+}
+
+api::ProblemDetails picture_lost_problem(const JobId& id, const std::string& asset)
 {
     return problem(500,
                    "result_damaged",
-                   "the stored picture of job " + id +
-                       " is damaged and is not served; submit the same job again: it "
-                       "renders to the same bytes",
+                   "the stored picture of job " + id + " was lost or damaged, and " + asset +
+                       ", from which it would render again, is not here: PUT /v1/assets/" + asset +
+                       ", then ask again",
                    true);
 }
 

@@ -23,7 +23,10 @@ api::ProblemDetails still_running_problem(const JobId& id);
 api::ProblemDetails render_failed_problem(const JobId& id,
                                           const api::ProblemDetails* why); // nullptr: canceled
 api::ProblemDetails expired_problem(const JobId& id);
-api::ProblemDetails damaged_problem(const JobId& id); // the stored picture is not what was stored
+// The stored picture was lost, so the job waits again.
+api::ProblemDetails renders_again_problem(const JobId& id);
+// The same, but it cannot render: an asset that it takes is gone.
+api::ProblemDetails picture_lost_problem(const JobId& id, const std::string& asset);
 
 // How a job fails.
 api::ProblemDetails time_limit_problem(double limit_s);

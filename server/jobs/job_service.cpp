@@ -6,6 +6,7 @@
 #include "server/jobs/live_jobs.h"
 #include "server/jobs/picture_cache.h"
 #include "server/jobs/result_keeper.h"
+#include "server/jobs/stored_pictures.h"
 #include "server/jobs/submission.h"
 #include "server/jobs/wait_estimate.h"
 #include "server/jobs/worker.h"
@@ -36,7 +37,8 @@ struct JobService::State {
         : store(store_), blobs(blobs_), imports(imports_), options(options_),
           keeper({store_, blobs_, live, pictures, options_.log, retention_of(options_.limits)}),
           worker({store_, blobs_, imports_, live, keeper, estimate, options_.log, options_.limits},
-                 options_.threads)
+                 options_.threads),
+          stored_pictures({store_, blobs_, live, pictures, keeper, options_.log})
     {
     }
 
@@ -50,11 +52,11 @@ struct JobService::State {
     WaitEstimate estimate;
     ResultKeeper keeper;
     Worker worker;
+    StoredPictures stored_pictures;
 
     std::optional<api::JobView> view(const JobId& id, const std::optional<LiveJob>& live_job);
     void end_at_once(const JobId& id, OutcomePtr outcome);
     std::variant<JobOutcome, api::ProblemDetails> finished(const JobId& id);
-    std::variant<JobImage, api::ProblemDetails> stored_image(const JobId& id, const std::string& digest);
     bool has_stored_result(const std::string& render_key);
 };
 
@@ -242,26 +244,7 @@ std::variant<JobImage, api::ProblemDetails> JobService::image(const JobId& id)
     const auto& outcome = std::get<JobOutcome>(ended);
     const std::string& digest = outcome.result.image_digest;
     if (outcome.png) return JobImage{outcome.png, digest};
-    if (PngBytes cached = state_->pictures.find(digest)) return JobImage{std::move(cached), digest};
-    return state_->stored_image(id, digest);
-}
-
-std::variant<JobImage, api::ProblemDetails> JobService::State::stored_image(const JobId& id,
-                                                                            const std::string& digest)
-{
-    try {
-        if (auto bytes = blobs.read(BlobStore::Kind::result, digest)) {
-            auto png = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));
-            pictures.put(digest, png);
-            return JobImage{std::move(png), digest};
-        }
-        options.log.write(LogLevel::error, "picture_missing", {{"job", id}, {"digest", digest}});
-    } catch (const StoreError& error) { // damaged: out of the way, so that the same job renders it anew
-        options.log.write(LogLevel::error, "picture_damaged", {{"job", id}, {"what", error.what()}});
-        const auto hold = keeper.hold_results();
-        blobs.remove(BlobStore::Kind::result, digest);
-    }
-    return damaged_problem(id);
+    return state_->stored_pictures.get(id, digest);
 }
 
 std::variant<std::string, api::ProblemDetails> JobService::report(const JobId& id)

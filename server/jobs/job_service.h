@@ -70,7 +70,8 @@ public:
     std::optional<api::JobView> cancel(const JobId& id);                         // idempotent
     bool remove(const JobId& id); // cancels if active, then forgets; false: not there
 
-    // The picture, or why not: 404, 504 still_running, 409 render_failed, 410 expired.
+    // The picture, or why not: 404, 504 still_running, 409 render_failed, 410 expired. A picture that the
+    // disk lost makes the job queued again (504), or is named (500 result_damaged) if a mesh is gone too.
     std::variant<JobImage, api::ProblemDetails> image(const JobId& id);
     std::variant<std::string, api::ProblemDetails> report(const JobId& id); // JSON text
     std::variant<std::string, api::ProblemDetails>

@@ -83,12 +83,20 @@ LiveJobs::Begun LiveJobs::begin(const JobId& id, std::int64_t started_ms)
     return {entry.stop.get_token(), nullptr};
 }
 
-Sharing LiveJobs::describe(const JobId& id, Sharing sharing)
+LiveJobs::Described LiveJobs::describe(const JobId& id, Sharing sharing)
 {
     const std::lock_guard lock(mutex_);
     Entry& entry = jobs_[id];
     index(id, entry, std::move(sharing));
-    return entry.sharing;
+    if (entry.job.phase != LivePhase::canceling) {
+        if (const OutcomePtr published = published_result(entry.sharing)) {
+            entry.job.outcome = published;
+            entry.job.phase = LivePhase::succeeded;
+            entry.job.joined = true;
+            changed(entry, true);
+        }
+    }
+    return {entry.sharing, entry.job.outcome};
 }
 
 void LiveJobs::set_running(const JobId& id)

@@ -71,9 +71,13 @@ public:
         OutcomePtr outcome; // it has one already: there is nothing to do
     };
     Begun begin(const JobId& id, std::int64_t started_ms);
-    // Once the worker has read the job; a job of an earlier process enters here. What was said at add()
-    // stands.
-    Sharing describe(const JobId& id, Sharing sharing);
+    // Once the worker has read the job; a job of an earlier process enters here, and may find as at add() that
+    // another's result serves it. What was said at add() stands.
+    struct Described {
+        Sharing sharing;
+        OutcomePtr outcome;
+    };
+    Described describe(const JobId& id, Sharing sharing);
     void set_running(const JobId& id);
     void set_progress(const JobId& id, double fraction, std::uint32_t samples);
     // Back in the queue: drained, or to be tried again.

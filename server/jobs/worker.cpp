@@ -110,9 +110,10 @@ void Worker::attempt(const Task& task)
     if (auto* problem = std::get_if<api::ProblemDetails>(&read)) return end_failed(task, std::move(*problem));
     const auto& request = std::get<api::JobRequest>(read);
 
-    const Sharing sharing =
+    const LiveJobs::Described known =
         rooms_.live.describe(record.id, sharing_of(request, record.spec.render_key, record.spec.no_cache));
-    if (end_with_known_result(task, sharing)) return;
+    if (known.outcome) return rooms_.keeper.keep({{}, task.lease, known.outcome, true});
+    if (end_with_known_result(task, known.sharing)) return;
     run_request(task, request);
 }
 

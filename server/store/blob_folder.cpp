@@ -118,8 +118,8 @@ std::optional<std::vector<std::byte>> BlobFolder::read(std::string_view digest) 
     while (filled < bytes.size()) {
         const ssize_t count = ::read(fd.get(), bytes.data() + filled, bytes.size() - filled);
         if (count < 0 && errno == EINTR) continue;
-        if (count < 0) throw_io_error("read", file, errno);
-        if (count == 0) break; // shorter than it said: the digest will tell
+        if (count < 0 && errno != EIO) throw_io_error("read", file, errno);
+        if (count <= 0) break; // shorter than it said, or a bad sector: the digest will tell
         filled += static_cast<std::size_t>(count);
     }
     bytes.resize(filled);

@@ -20,8 +20,8 @@ std::size_t read_at(const FileDescriptor& file,
         const ssize_t count = ::pread(
             file.get(), buffer.data() + filled, buffer.size() - filled, static_cast<off_t>(offset + filled));
         if (count < 0 && errno == EINTR) continue;
-        if (count < 0) throw_io_error("read", path, errno);
-        if (count == 0) break;
+        if (count < 0 && errno != EIO) throw_io_error("read", path, errno);
+        if (count <= 0) break; // the end, or a bad sector: the digest will tell
         filled += static_cast<std::size_t>(count);
     }
     return filled;

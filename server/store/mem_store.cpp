@@ -39,6 +39,7 @@ public:
     bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) override;
     bool confirm_cancel(const Lease& lease, std::int64_t now_ms) override;
     std::optional<JobRecord> cancel(const Tenant& tenant, const JobId& id, std::int64_t now_ms) override;
+    bool render_again(const Tenant& tenant, const JobId& id, const std::string& image_digest) override;
     bool remove(const Tenant& tenant, const JobId& id) override;
     std::size_t sweep(std::int64_t before_ms) override;
     std::vector<std::string> referenced_digests() override;
@@ -264,6 +265,21 @@ std::optional<JobRecord> MemStore::cancel(const Tenant& tenant, const JobId& id,
         jobs_.finish(*job, StoredState::canceled, now_ms);
     }
     return job->record;
+}
+
+bool MemStore::render_again(const Tenant& tenant, const JobId& id, const std::string& image_digest)
+{
+    const std::lock_guard lock(mutex_);
+    Job* job = jobs_.find(tenant, id);
+    if (job == nullptr || job->record.state != StoredState::succeeded ||
+        job->record.result->image_digest != image_digest)
+        return false;
+    job->record.result.reset();
+    job->record.finished_ms.reset();
+    job->record.attempts = 0;
+    job->record.reused = false;
+    jobs_.enter(*job, StoredState::queued);
+    return true;
 }
 
 bool MemStore::remove(const Tenant& tenant, const JobId& id)

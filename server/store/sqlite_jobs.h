@@ -57,6 +57,7 @@ void set_reused(SqliteConnection& db, std::int64_t sequence);
 void request_cancel(SqliteConnection& db, std::int64_t sequence);
 void uncount_attempt(SqliteConnection& db, std::int64_t sequence);
 std::optional<Lease> lease_next(SqliteConnection& db, std::int64_t now_ms); // nothing waits
+void reset_job(SqliteConnection& db, std::int64_t sequence); // queued as if never tried, without a result
 void delete_job(SqliteConnection& db, std::int64_t sequence);
 std::size_t expire_jobs(SqliteConnection& db, std::int64_t before_ms); // and forgets
 void delete_keys(SqliteConnection& db, std::int64_t before_ms);

@@ -37,6 +37,7 @@ public:
     bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) override;
     bool confirm_cancel(const Lease& lease, std::int64_t now_ms) override;
     std::optional<JobRecord> cancel(const Tenant& tenant, const JobId& id, std::int64_t now_ms) override;
+    bool render_again(const Tenant& tenant, const JobId& id, const std::string& image_digest) override;
     bool remove(const Tenant& tenant, const JobId& id) override;
     std::size_t sweep(std::int64_t before_ms) override;
     std::vector<std::string> referenced_digests() override { return readers_.read(read_referenced_digests); }
@@ -232,6 +233,20 @@ std::optional<JobRecord> Embedded::cancel(const Tenant& tenant, const JobId& id,
         if (job->state == StoredState::queued) set_state(db, job->sequence, StoredState::canceled, now_ms);
         return std::move(read_job(db, job->sequence)->record);
     });
+}
+
+bool Embedded::render_again(const Tenant& tenant, const JobId& id, const std::string& image_digest)
+{
+    const bool waits = write(Durability::written, [&](SqliteConnection& db) {
+        const std::optional<JobRow> job = read_job(db, tenant, id);
+        if (!job || job->record.state != StoredState::succeeded ||
+            job->record.result->image_digest != image_digest)
+            return false;
+        reset_job(db, job->sequence);
+        return true;
+    });
+    if (waits) bell_.ring();
+    return waits;
 }
 
 bool Embedded::remove(const Tenant& tenant, const JobId& id)

@@ -97,6 +97,15 @@ std::optional<Lease> lease_next(SqliteConnection& db, std::int64_t now_ms)
     return lease;
 }
 
+void reset_job(SqliteConnection& db, std::int64_t sequence)
+{
+    db.prepare("DELETE FROM results WHERE job = ?1").bind(sequence).run();
+    db.prepare("UPDATE jobs SET state = 0, attempts = 0, reused = 0, started_ms = NULL, finished_ms = NULL "
+               "WHERE seq = ?1")
+        .bind(sequence)
+        .run();
+}
+
 void delete_job(SqliteConnection& db, std::int64_t sequence)
 {
     db.prepare("DELETE FROM jobs WHERE seq = ?1").bind(sequence).run();

@@ -2,7 +2,7 @@
 // conformance suite.
 //
 // Durability  submit(), cancel(), remove() and sweep() outlast a power cut when they return. What workers do
-//             (claim, complete, release, fail, confirm_cancel) outlasts the death of the process, and a power
+//             (claim, complete, release, fail, confirm_cancel, render_again) outlasts the death of the process, and a power
 //             cut a little later: a lost result renders again to the same bytes. Everyone reads what was
 //             written.
 // Fencing     claim() raises a job's epoch; complete(), fail(), release() and renew() with an older epoch do
@@ -171,6 +171,9 @@ public:
     // Queued: canceled at once. Leased: cancel_requested. Final: nothing changes. Nothing if there is no such
     // job.
     virtual std::optional<JobRecord> cancel(const Tenant& tenant, const JobId& id, std::int64_t now_ms) = 0;
+    // A succeeded job whose picture was lost waits again, as if it had never been tried; its result is
+    // dropped. False: it is not succeeded with this picture.
+    virtual bool render_again(const Tenant& tenant, const JobId& id, const std::string& image_digest) = 0;
     // Forgets a final job; false if there is none or it is not final.
     virtual bool remove(const Tenant& tenant, const JobId& id) = 0;
 

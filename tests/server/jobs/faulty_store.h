@@ -93,6 +93,12 @@ public:
     {
         return real_->cancel(tenant, id, now_ms);
     }
+    bool render_again(const server::Tenant& tenant,
+                      const server::JobId& id,
+                      const std::string& image_digest) override
+    {
+        return real_->render_again(tenant, id, image_digest);
+    }
     bool remove(const server::Tenant& tenant, const server::JobId& id) override
     {
         return real_->remove(tenant, id);

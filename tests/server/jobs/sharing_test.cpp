@@ -104,29 +104,4 @@ TEST_P(SharedRender, GoesOnWhenTheFirstIsCanceled)
     EXPECT_EQ(tests::finished(*node, second.id).state, JobState::canceled);
 }
 
-TEST_P(SharedRender, IsNotOfADamagedPicture)
-{
-    const std::string id = [&] {
-        const auto node = open();
-        node->jobs.start();
-        const api::JobView done = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
-        const auto file = [&] {
-            node->jobs.stop();
-            return node->blobs.path(server::BlobStore::Kind::result,
-                                    node->store->get({}, done.id)->result->image_digest);
-        }();
-        std::filesystem::resize_file(file, 10);
-        return done.id;
-    }();
-    if (std::string(GetParam()) == "MemStore") return; // forgets its jobs with the node
-    const auto node = open();
-    node->jobs.start();
-    EXPECT_EQ(tests::image_refusal(*node, id).code, "result_damaged");
-    const api::JobView again = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
-    EXPECT_FALSE(again.reused);
-    tests::digest_of_picture(*node, again.id);
-    node->jobs.stop();
-    tests::digest_of_picture(*node, id); // the same bytes: the old job has its picture back
-}
-
 } // namespace
