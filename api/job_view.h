@@ -53,6 +53,9 @@ std::string write_report(const renderer::RenderReport& report,
                          const std::string& job_id,
                          const std::string& render_key,
                          const renderer::QualitySettings& requested);
+// A report as another job's, which shares the render: the same but for its name. Throws std::invalid_argument
+// if it is none.
+std::string readdress_report(const std::string& report, const std::string& job_id);
 
 // Asset answers.
 struct AssetInfo {

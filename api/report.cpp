@@ -1,6 +1,8 @@
 #include "api/job_view.h"
 #include "api/json/json.h"
 
+#include <stdexcept>
+
 namespace api {
 
 namespace {
@@ -76,6 +78,15 @@ std::string write_report(const renderer::RenderReport& report,
          {{"triangles", geometry.triangles},
           {"instances", geometry.instances},
           {"bvh_bytes", geometry.bvh_bytes}}}};
+    return text_of(json, true);
+}
+
+std::string readdress_report(const std::string& report, const std::string& job_id)
+{
+    Json json = Json::parse(report, nullptr, false);
+    if (!json.is_object() || !json.contains("job_id"))
+        throw std::invalid_argument("a stored report is no JSON object with a job_id");
+    json["job_id"] = job_id;
     return text_of(json, true);
 }
 

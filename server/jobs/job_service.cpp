@@ -251,7 +251,8 @@ std::variant<std::string, api::ProblemDetails> JobService::report(const JobId& i
 {
     auto ended = state_->finished(id);
     if (auto* problem = std::get_if<api::ProblemDetails>(&ended)) return std::move(*problem);
-    return std::get<JobOutcome>(ended).result.report_json;
+    // It was written by the job that rendered; who shares the render has it under a name of its own.
+    return api::readdress_report(std::get<JobOutcome>(ended).result.report_json, id);
 }
 
 std::variant<std::string, api::ProblemDetails> JobService::scene(const JobId& id)

@@ -73,7 +73,7 @@ public:
     // The picture, or why not: 404, 504 still_running, 409 render_failed, 410 expired. A picture that the
     // disk lost makes the job queued again (504), or is named (500 result_damaged) if a mesh is gone too.
     std::variant<JobImage, api::ProblemDetails> image(const JobId& id);
-    std::variant<std::string, api::ProblemDetails> report(const JobId& id); // JSON text
+    std::variant<std::string, api::ProblemDetails> report(const JobId& id); // JSON text, under this id
     std::variant<std::string, api::ProblemDetails>
     scene(const JobId& id); // as executed, or as accepted until then
 

@@ -92,6 +92,16 @@ renderer::RenderReport a_report()
     return report;
 }
 
+TEST(Report, AreTheSameUnderTheNameOfAnotherJob)
+{
+    const std::string report = api::write_report(a_report(), "job", "key", {});
+    const json other = checked(api::readdress_report(report, "other"), "Report");
+    EXPECT_EQ(other["job_id"], "other");
+    EXPECT_EQ(api::readdress_report(other.dump(), "job"), report);
+    for (const char* none : {"", "[]", "{}", "{\"job_id\":"})
+        EXPECT_THROW(api::readdress_report(none, "other"), std::invalid_argument) << none;
+}
+
 TEST(Report, TellsSamplesAskedForAndTaken)
 {
     renderer::QualitySettings quality;
