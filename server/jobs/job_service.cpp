@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <atomic>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 namespace server {
@@ -173,13 +174,25 @@ JobService::wait(const JobId& id, std::chrono::milliseconds timeout, const std::
 
 std::variant<std::string, api::ProblemDetails> JobService::list(const ListQuery& query)
 {
-    const ListPage page = state_->store.list(query);
-    if (page.bad_cursor) return bad_cursor_problem();
+    // As for one job, memory is read before the store: an outcome goes from there to here.
+    const std::unordered_map<JobId, LiveJob> live = state_->live.all();
+    ListQuery rest = query;
+    for (const auto& [id, job] : live)
+        if (query.state && ended_state_of(job) == query.state) rest.also.push_back(id);
     std::vector<api::JobView> views;
-    views.reserve(page.jobs.size());
-    for (const JobRecord& record : page.jobs)
-        views.push_back(view_of(record, state_->live.snapshot(record.id).job, std::nullopt));
-    return api::write_job_list(views, page.next_cursor);
+    do { // more than once where jobs of a page turn out to be in another state by now
+        rest.limit = query.limit - static_cast<std::uint32_t>(views.size());
+        const ListPage page = state_->store.list(rest);
+        if (page.bad_cursor) return bad_cursor_problem();
+        for (const JobRecord& record : page.jobs) {
+            const auto known = live.find(record.id);
+            api::JobView view = view_of(
+                record, known == live.end() ? std::nullopt : std::optional(known->second), std::nullopt);
+            if (!query.state || stored_state_of(view.state) == *query.state) views.push_back(std::move(view));
+        }
+        rest.cursor = page.next_cursor;
+    } while (!rest.cursor.empty() && views.size() < query.limit);
+    return api::write_job_list(views, rest.cursor);
 }
 
 std::optional<api::JobView> JobService::cancel(const JobId& id)

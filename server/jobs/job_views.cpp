@@ -79,6 +79,33 @@ void add_outcome(api::JobView& view, const JobOutcome& outcome)
 
 } // namespace
 
+StoredState stored_state_of(api::JobState seen)
+{
+    switch (seen) {
+    case api::JobState::queued:
+        return StoredState::queued;
+    case api::JobState::preparing:
+    case api::JobState::running:
+    case api::JobState::canceling:
+        return StoredState::leased;
+    case api::JobState::succeeded:
+        return StoredState::succeeded;
+    case api::JobState::failed:
+        return StoredState::failed;
+    case api::JobState::canceled:
+        return StoredState::canceled;
+    case api::JobState::expired:
+        return StoredState::expired;
+    }
+    return StoredState::queued;
+}
+
+std::optional<StoredState> ended_state_of(const LiveJob& live)
+{
+    if (!live.outcome) return std::nullopt;
+    return stored_state_of(state_of(live.phase));
+}
+
 api::JobView view_of(const JobRecord& record,
                      const std::optional<LiveJob>& live,
                      std::optional<std::uint32_t> queue_position)

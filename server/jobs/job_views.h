@@ -15,4 +15,9 @@ api::JobView view_of(const JobRecord& record,
                      const std::optional<LiveJob>& live,
                      std::optional<std::uint32_t> queue_position);
 
+// The state under which the store lists, or will list, a job that is seen so.
+StoredState stored_state_of(api::JobState seen);
+// The same of a job that only memory knows to have ended.
+std::optional<StoredState> ended_state_of(const LiveJob& live);
+
 } // namespace server

@@ -221,6 +221,15 @@ LiveJobs::Snapshot LiveJobs::snapshot(const JobId& id) const
     return snapshot;
 }
 
+std::unordered_map<JobId, LiveJob> LiveJobs::all() const
+{
+    const std::lock_guard lock(mutex_);
+    std::unordered_map<JobId, LiveJob> jobs;
+    for (const auto& [id, entry] : jobs_)
+        jobs.emplace(id, entry.job);
+    return jobs;
+}
+
 bool LiveJobs::wait(const JobId& id,
                     const Mark& mark,
                     std::chrono::steady_clock::time_point deadline,

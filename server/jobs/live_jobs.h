@@ -97,6 +97,7 @@ public:
     void forget(const JobId& id); // the store knows the outcome
 
     Snapshot snapshot(const JobId& id) const;
+    std::unordered_map<JobId, LiveJob> all() const;
     // Until the job changed since `mark` (with `progress`, also by it or its place in the queue).
     // False: time is up, or the service closes.
     bool wait(const JobId& id,

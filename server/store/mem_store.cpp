@@ -5,6 +5,7 @@
 #include "server/store/store_rules.h"
 #include "server/store/work_bell.h"
 
+#include <algorithm>
 #include <mutex>
 #include <set>
 
@@ -110,7 +111,9 @@ std::optional<JobRecord> MemStore::get(const Tenant& tenant, const JobId& id)
 bool MemStore::matches(const Job& job, const ListQuery& query) const
 {
     const JobRecord& record = job.record;
-    if (record.tenant != query.tenant || (query.state && record.state != *query.state)) return false;
+    if (record.tenant != query.tenant) return false;
+    const bool named = std::find(query.also.begin(), query.also.end(), record.id) != query.also.end();
+    if (query.state && record.state != *query.state && !named) return false;
     if (!query.label) return true;
     const auto label = record.spec.labels.find(query.label->first);
     return label != record.spec.labels.end() && label->second == query.label->second;

@@ -69,6 +69,14 @@ void add_labels_and_assets(SqliteConnection& db, JobRow& job)
         job.record.spec.asset_digests.push_back(asset.text(0));
 }
 
+std::string json_array_of(const std::vector<JobId>& ids) // of hex digits: nothing to escape
+{
+    std::string text;
+    for (const JobId& id : ids)
+        text += (text.empty() ? "\"" : ",\"") + id + '"';
+    return '[' + text + ']';
+}
+
 std::optional<JobRow> whole_job(SqliteConnection& db, SqliteStatement& row)
 {
     if (!row.step()) return std::nullopt;
@@ -106,8 +114,17 @@ std::optional<JobRow> read_job(SqliteConnection& db, std::int64_t sequence)
 std::vector<JobRow> read_jobs_before(SqliteConnection& db, std::int64_t sequence, const ListQuery& query)
 {
     std::string sql = "SELECT " + kShortColumns + kFromJobs + " WHERE j.tenant = ?1 AND j.seq < ?2";
-    if (query.state) sql += " AND j.state = ?3";
-    if (query.label) sql += " AND j.seq IN (SELECT job FROM labels WHERE name = ?4 AND value = ?5)";
+    const bool named = query.state && !query.also.empty();
+    const std::string label =
+        query.label ? " AND j.seq IN (SELECT job FROM labels WHERE name = ?4 AND value = ?5)" : "";
+    if (named) // each by its index: with a plain OR all jobs of the state would be sorted
+        sql += " AND j.seq IN (SELECT seq FROM jobs WHERE id IN (SELECT value FROM json_each(?7)) "
+               "UNION SELECT seq FROM (SELECT j.seq FROM jobs j WHERE j.tenant = ?1 AND j.seq < ?2 AND "
+               "j.state = ?3" +
+               label + " ORDER BY j.seq DESC LIMIT ?6))";
+    else if (query.state)
+        sql += " AND j.state = ?3";
+    sql += label;
     SqliteStatement row = db.prepare(sql + " ORDER BY j.seq DESC LIMIT ?6");
     row.bind_at(1, query.tenant);
     row.bind_at(2, sequence);
@@ -117,6 +134,7 @@ std::vector<JobRow> read_jobs_before(SqliteConnection& db, std::int64_t sequence
         row.bind_at(5, query.label->second);
     }
     row.bind_at(6, std::int64_t{query.limit} + 1); // one more tells whether there are more
+    if (named) row.bind_at(7, json_array_of(query.also));
     std::vector<JobRow> jobs;
     while (row.step())
         jobs.push_back(short_row(row));

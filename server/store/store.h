@@ -111,6 +111,7 @@ struct Submitted {
 struct ListQuery {
     Tenant tenant;
     std::optional<StoredState> state{};
+    std::vector<JobId> also{}; // beside those of the state, whatever theirs is; the rest holds for them too
     std::optional<std::pair<std::string, std::string>> label{}; // name, value
     std::uint32_t limit = 50;
     std::string cursor{}; // empty: from the newest

@@ -63,6 +63,33 @@ TEST_P(JobCrash, ServesFromMemoryUntilTheDiskTakesTheResult)
     EXPECT_TRUE(node->jobs.remove(id)); // waits for the row
 }
 
+TEST_P(JobCrash, ListsAJobUnderTheStateThatItIsSeenIn)
+{
+    DiskFaults faults;
+    faults.no_results = true;
+    const auto node = open({}, wrap_in(faults));
+    const std::string oldest = submit(*node, tests::quick_job("", 1)).id;
+    node->jobs.start();
+    const std::string id = tests::succeeded(*node, submit(*node, tests::quick_job()).id).id;
+    tests::succeeded(*node, oldest);
+    const std::string follower = tests::succeeded(*node, submit(*node, tests::quick_job()).id).id;
+    faults.refused_results.wait(0); // the store still calls them leased and queued
+    const auto listed = [&](server::StoredState state, std::uint32_t limit = 50) {
+        return tests::expect<std::string>(
+            node->jobs.list({.tenant = {}, .state = state, .label = {}, .limit = limit, .cursor = {}}));
+    };
+    const std::string succeeded = listed(server::StoredState::succeeded);
+    for (const std::string& job : {oldest, id, follower}) {
+        EXPECT_NE(succeeded.find(job), std::string::npos) << succeeded;
+        for (const auto other : {server::StoredState::leased, server::StoredState::queued})
+            EXPECT_EQ(listed(other).find(job), std::string::npos);
+    }
+    const std::string page = listed(server::StoredState::succeeded, 2);
+    EXPECT_NE(page.find(follower), std::string::npos) << "the newest first";
+    EXPECT_EQ(page.find(oldest), std::string::npos) << page;
+    EXPECT_NE(page.find("next_cursor"), std::string::npos) << page;
+}
+
 TEST_P(JobCrash, TriesAgainAfterTheStoreFailed)
 {
     DiskFaults faults;

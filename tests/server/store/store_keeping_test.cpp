@@ -87,6 +87,38 @@ TEST_P(StoreKeeping, ListsByStateAndByLabel)
               Names{});
 }
 
+TEST_P(StoreKeeping, ListsNamedJobsBesideThoseOfAState)
+{
+    succeed("first");
+    const server::JobId named = submit("named").id;
+    claim_one();
+    succeed("second");
+    submit("third");
+    auto foreign = a_request("foreign");
+    foreign.tenant = "bob";
+    server::ListQuery query{.tenant = "alice",
+                            .state = StoredState::succeeded,
+                            .also = {store->submit(foreign).job.id, named, server::make_job_id()}};
+    EXPECT_EQ(names_of(store->list(query)), (Names{"second", "named", "first"}));
+    query.limit = 1;
+    Names paged;
+    do {
+        const ListPage page = store->list(query);
+        for (const std::string& name : names_of(page))
+            paged.push_back(name);
+        query.cursor = page.next_cursor;
+    } while (!query.cursor.empty());
+    EXPECT_EQ(paged, (Names{"second", "named", "first"}));
+    query.label = std::pair{"name", "first"};
+    EXPECT_EQ(names_of(store->list(query)), (Names{"first"}));
+    query.label = std::pair{"name", "named"};
+    EXPECT_EQ(names_of(store->list(query)), (Names{"named"}));
+    query.state.reset();
+    query.label.reset();
+    query.limit = 50;
+    EXPECT_EQ(store->list(query).jobs.size(), 4U) << "without a state there is nothing to add";
+}
+
 TEST_P(StoreKeeping, LeavesTheLongTextsOutOfLists)
 {
     succeed("done");
