@@ -1,8 +1,33 @@
 #include "server/store/mem_jobs.h"
 
+#include "server/store/store_rules.h"
+
+#include <algorithm>
 #include <iterator>
 
 namespace server {
+
+namespace {
+
+JobRecord without_long_texts(JobRecord job)
+{
+    job.spec.request_json.clear();
+    if (job.result) job.result->report_json.clear();
+    if (job.result) job.result->scene_json.clear();
+    return job;
+}
+
+bool matches(const JobRecord& record, const ListQuery& query)
+{
+    if (record.tenant != query.tenant) return false;
+    const bool named = std::find(query.also.begin(), query.also.end(), record.id) != query.also.end();
+    if (query.state && record.state != *query.state && !named) return false;
+    if (!query.label) return true;
+    const auto label = record.spec.labels.find(query.label->first);
+    return label != record.spec.labels.end() && label->second == query.label->second;
+}
+
+} // namespace
 
 MemJobs::Job& MemJobs::add(JobRecord record)
 {
@@ -78,6 +103,73 @@ void MemJobs::forget(std::uint64_t sequence)
     by_sequence.erase(sequence);
     for (auto key = keys.begin(); key != keys.end();)
         key = key->second.sequence == sequence ? keys.erase(key) : std::next(key);
+}
+
+QueueDepth MemJobs::depth() const
+{
+    QueueDepth depth{.queued = waiting_.size(), .leased = 0};
+    for (const auto& [sequence, job] : by_sequence)
+        if (job.record.state == StoredState::leased) ++depth.leased;
+    return depth;
+}
+
+ListPage MemJobs::list(const ListQuery& query) const
+{
+    ListPage page;
+    std::optional<std::uint64_t> before = UINT64_MAX;
+    if (!query.cursor.empty()) before = sequence_of_cursor(query.cursor);
+    page.bad_cursor = !before;
+    if (!before || query.limit == 0) return page;
+    std::uint64_t last = 0;
+    for (auto at = std::make_reverse_iterator(by_sequence.lower_bound(*before)); at != by_sequence.rend();
+         ++at) {
+        if (!matches(at->second.record, query)) continue;
+        if (page.jobs.size() == query.limit) {
+            page.next_cursor = cursor_after(last);
+            break;
+        }
+        page.jobs.push_back(without_long_texts(at->second.record));
+        last = at->first;
+    }
+    return page;
+}
+
+std::vector<std::string> MemJobs::referenced_digests() const
+{
+    std::set<std::string> digests;
+    for (const auto& [sequence, job] : by_sequence) {
+        const JobRecord& record = job.record;
+        if (!is_final(record.state))
+            digests.insert(record.spec.asset_digests.begin(), record.spec.asset_digests.end());
+        if (record.result) digests.insert(record.result->image_digest);
+    }
+    return {digests.begin(), digests.end()};
+}
+
+std::size_t MemJobs::expire(std::int64_t before_ms)
+{
+    std::size_t expired = 0;
+    std::vector<std::uint64_t> old;
+    for (auto& [sequence, job] : by_sequence) {
+        JobRecord& record = job.record;
+        if (!is_final(record.state) || *record.finished_ms >= before_ms) continue;
+        if (*record.finished_ms < before_ms - kExpiredKept_ms) {
+            old.push_back(sequence);
+        } else if (record.state != StoredState::expired) {
+            record.state = StoredState::expired;
+            record.result.reset();
+            ++expired;
+        }
+    }
+    for (const std::uint64_t sequence : old)
+        forget(sequence);
+    return expired + old.size();
+}
+
+void MemJobs::forget_keys(std::int64_t before_ms)
+{
+    for (auto key = keys.begin(); key != keys.end();)
+        key = key->second.created_ms < before_ms ? keys.erase(key) : std::next(key);
 }
 
 } // namespace server

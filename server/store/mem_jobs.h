@@ -1,7 +1,7 @@
 // MemJobs: the jobs of a MemStore and the orders in which they are looked at.
 //
 // Threads  none of its own: the MemStore's mutex guards it.
-// Cost     find_reusable() and forget() look at everything: it is a store for tests.
+// Cost     what is about more than one job looks at everything: it is a store for tests.
 #pragma once
 
 #include "server/store/store.h"
@@ -13,6 +13,7 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace server {
 
@@ -39,10 +40,15 @@ public:
     Job* next_waiting();
     std::uint32_t position(const Job& waiting) const;
     std::size_t waiting() const { return waiting_.size(); }
+    QueueDepth depth() const;
+    ListPage list(const ListQuery& query) const;
+    std::vector<std::string> referenced_digests() const;
 
     void enter(Job& job, StoredState state);
     void finish(Job& job, StoredState state, std::int64_t now_ms);
     void forget(std::uint64_t sequence);
+    std::size_t expire(std::int64_t before_ms); // and forgets; how many
+    void forget_keys(std::int64_t before_ms);
 
     std::map<std::uint64_t, Job> by_sequence;
     std::map<std::pair<Tenant, std::string>, IdempotencyKey> keys;

@@ -75,17 +75,7 @@ Submitted submit_in(SqliteConnection& db, const SubmitRequest& request)
     if (!result && request.queue_limit != 0 && read_depth(db).queued >= request.queue_limit)
         return {SubmitStatus::queue_full, {}};
 
-    JobRecord job;
-    job.id = request.id.empty() ? make_job_id() : request.id;
-    job.tenant = request.tenant;
-    job.spec = request.spec;
-    job.created_ms = request.now_ms;
-    if (result) {
-        job.state = StoredState::succeeded;
-        job.finished_ms = request.now_ms;
-        job.reused = true;
-        job.result = std::move(result);
-    }
+    JobRecord job = job_of(request, std::move(result));
     const std::int64_t sequence = insert_job(db, job);
     if (job.result) insert_result(db, sequence, *job.result);
     if (keyed) insert_key(db, request, sequence);

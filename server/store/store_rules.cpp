@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <utility>
 
 namespace server {
 
@@ -27,6 +28,22 @@ std::optional<std::uint64_t> sequence_of_cursor(std::string_view cursor)
     // Sequence numbers are positive and SQLite's integers are signed.
     if (error != std::errc{} || stop != end || sequence == 0 || sequence > INT64_MAX) return std::nullopt;
     return sequence;
+}
+
+JobRecord job_of(const SubmitRequest& request, std::optional<JobResult> of_twin)
+{
+    JobRecord job;
+    job.id = request.id.empty() ? make_job_id() : request.id;
+    job.tenant = request.tenant;
+    job.spec = request.spec;
+    job.created_ms = request.now_ms;
+    if (of_twin) {
+        job.state = StoredState::succeeded;
+        job.finished_ms = request.now_ms;
+        job.reused = true;
+        job.result = std::move(of_twin);
+    }
+    return job;
 }
 
 StoredState state_when_given_back(bool cancel_requested)

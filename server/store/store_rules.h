@@ -19,6 +19,9 @@ inline constexpr std::int64_t kExpiredKept_ms = 7LL * 24 * 3600 * 1000; // beyon
 std::string cursor_after(std::uint64_t sequence);
 std::optional<std::uint64_t> sequence_of_cursor(std::string_view cursor);
 
+// The job of an accepted request: succeeded already where a twin's result serves it, else queued.
+JobRecord job_of(const SubmitRequest& request, std::optional<JobResult> of_twin);
+
 // Where a leased job goes that its worker gives back, or lost.
 StoredState state_when_given_back(bool cancel_requested);
 // Where a leased job goes that its worker failed.
