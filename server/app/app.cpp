@@ -64,7 +64,8 @@ int run_service(const ServiceOptions& options, const StopSignals& signals, std::
                     {.host = options.host,
                      .port = options.port,
                      .health_port = options.health_port,
-                     .limits = options.limits});
+                     .limits = options.limits,
+                     .on_deaf = [&signals] { signals.raise(); }});
     jobs.start();
     http.start();
 
@@ -77,11 +78,13 @@ int run_service(const ServiceOptions& options, const StopSignals& signals, std::
 
     const int signal = signals.wait();
     signals.leave_on_next();
-    log.write(LogLevel::info, "stopping", {{"signal", std::int64_t{signal}}});
+    // A service that nobody can reach is of use to none but a supervisor that starts it anew.
+    const bool deaf = !http.listening();
+    log.write(LogLevel::info, "stopping", {{"signal", std::int64_t{signal}}, {"deaf", deaf}});
     jobs.stop(); // first: whoever waits for a job gets an answer
     http.stop();
     log.write(LogLevel::info, "stopped");
-    return 0;
+    return deaf ? 1 : 0;
 }
 
 } // namespace server

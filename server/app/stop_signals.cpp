@@ -37,6 +37,11 @@ int StopSignals::wait() const
     return wait_for(set_);
 }
 
+void StopSignals::raise() const
+{
+    kill(getpid(), SIGTERM);
+}
+
 void StopSignals::leave_on_next() const
 {
     // Nothing may hold this up, so it is a thread that nobody joins; the process ends under it.

@@ -12,6 +12,7 @@ public:
     StopSignals();
 
     int wait() const;           // the signal that came
+    void raise() const;         // as if a SIGTERM had come; from any thread
     void leave_on_next() const; // from now on a signal ends the process at once, with 128 + its number
 
 private:

@@ -6,6 +6,8 @@
 #include "server/http/job_handlers.h"
 #include "server/http/router.h"
 
+#include <mutex>
+
 namespace server {
 
 namespace {
@@ -34,6 +36,7 @@ GuardOptions health_options(const HttpOptions& options)
     guard.threads = kHealthThreads;
     guard.queue = kHealthQueue;
     guard.requests_per_connection = 1; // two threads: nobody keeps one
+    guard.drain = std::chrono::seconds(1);
     guard.stream.head = std::chrono::seconds(1);
     guard.stream.keep_alive = std::chrono::seconds(1);
     return guard;
@@ -60,8 +63,8 @@ struct HttpServer::State {
           HttpOptions wanted)
         : options(std::move(wanted)), documents(job_service, store, options.limits),
           assets(store, blobs, imports, options.limits), jobs(job_service, store, blobs, options.limits),
-          router(log), health_router(log), main(guard_options(options), log, dispatch_to(router)),
-          health(health_options(options), log, dispatch_to(health_router))
+          router(log), health_router(log), main(telling(guard_options(options)), log, dispatch_to(router)),
+          health(telling(health_options(options)), log, dispatch_to(health_router))
     {
         documents.add_routes(router);
         assets.add_routes(router);
@@ -69,7 +72,14 @@ struct HttpServer::State {
         documents.add_health_routes(health_router);
     }
 
+    GuardOptions telling(GuardOptions guard)
+    {
+        if (options.on_deaf) guard.on_deaf = [this] { std::call_once(deaf, options.on_deaf); };
+        return guard;
+    }
+
     const HttpOptions options;
+    std::once_flag deaf;
     DocumentHandlers documents;
     AssetHandlers assets;
     JobHandlers jobs;
@@ -102,6 +112,11 @@ void HttpServer::stop()
 {
     state_->main.stop();
     state_->health.stop(); // last: it tells that the service drains
+}
+
+bool HttpServer::listening() const
+{
+    return state_->main.listening() && state_->health.listening();
 }
 
 int HttpServer::port() const

@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct HttpOptions {
     std::uint64_t write_rate = 16 << 10;          // bytes a second on average, after the first 10 s
     // Connections that wait for a thread beyond this many are refused with 503.
     std::size_t connection_queue = 256;
+    // Called once, when a listener broke and nobody can be reached any more; must not call stop().
+    std::function<void()> on_deaf;
 };
 
 class HttpServer {
@@ -42,8 +45,9 @@ public:
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;
 
-    void start();     // binds and listens; std::system_error naming host and port if it cannot
-    void stop();      // answers what is under way, closes the listeners
+    void start(); // binds and listens; std::system_error naming host and port if it cannot
+    void stop();  // closes the listeners, answers what is under way, cuts off what takes over 6 s
+    bool listening() const;
     int port() const; // the bound ones
     int health_port() const;
     std::vector<std::string> routes() const; // "GET /v1/jobs/{id}", ...: what openapi.json is held against

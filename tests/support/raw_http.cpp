@@ -116,6 +116,17 @@ std::optional<HttpAnswer> RawConnection::read(bool head)
     return answer;
 }
 
+std::size_t RawConnection::read_bytes(std::size_t count)
+{
+    std::size_t got = 0;
+    do {
+        const std::size_t taken = std::min(count - got, buffer_.size());
+        buffer_.erase(0, taken);
+        got += taken;
+    } while (got < count && receive());
+    return got;
+}
+
 bool RawConnection::wait_closed()
 {
     try {

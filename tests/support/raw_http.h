@@ -4,6 +4,7 @@
 // Errors  std::runtime_error when the server cannot be reached or says nothing for 30 s.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -37,6 +38,8 @@ public:
     std::optional<HttpAnswer> read(bool head = false);
     // The next status line and its headers alone, 100 too.
     std::optional<HttpAnswer> read_head();
+    // So many bytes of a body; fewer when the server closes before.
+    std::size_t read_bytes(std::size_t count);
     bool wait_closed(); // until the server closes; true if it did within 30 s
     void hang_up();
 

@@ -91,7 +91,9 @@ ConnectionStream::Await ConnectionStream::await_head(std::string& block, const s
         const auto now = Clock::now();
         if (size > 0 && head_end == Clock::time_point::max()) head_end = now + limits_.head;
         if (now >= head_end) return Await::too_slow;
-        if (size == 0 && (now >= idle_end || give_up())) return Await::closed;
+        // Closed over a request that has come, the socket would take the answer before it along.
+        if (size == 0 && (now >= idle_end || give_up()) && !wait_for(POLLIN, milliseconds(0)))
+            return Await::closed;
         const auto left = std::chrono::ceil<milliseconds>((size > 0 ? head_end : idle_end) - now);
         const auto slice = size > 0 ? left : std::min(left, kGlance);
         if (wait_for(POLLIN, slice) && !receive(milliseconds(0))) return Await::closed;

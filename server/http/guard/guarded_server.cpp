@@ -6,16 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <exception>
-#include <fcntl.h>
 #include <string_view>
 #include <system_error>
-#include <unistd.h>
 
 namespace server {
 
 namespace {
 
-constexpr int kBacklog = 1024; // httplib listens with 5
 constexpr const char* kProblemType = "application/problem+json";
 constexpr const char* kMethods = "GET, HEAD, POST, PUT, PATCH, DELETE, OPTIONS";
 
@@ -76,17 +73,6 @@ void explain(const httplib::Request& request, httplib::Response& response)
 GuardedServer::GuardedServer(const GuardOptions& options, const Log& log, const Dispatch& dispatch)
     : options_(options), log_(log)
 {
-    // SO_REUSEADDR alone: with httplib's SO_REUSEPORT two services would share one port without a word.
-    set_socket_options([this](socket_t fd) {
-        const int yes = 1;
-        setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-        listener_ = fd;
-    });
-    set_tcp_nodelay(true);
-    new_task_queue = [this] {
-        pool_ = new WorkerPool(options_.threads, options_.queue);
-        return pool_.load();
-    };
     register_handlers(dispatch);
 }
 
@@ -141,60 +127,77 @@ void GuardedServer::register_handlers(const Dispatch& dispatch)
 
 void GuardedServer::start(const std::string& host, int port)
 {
-    errno = 0;
-    port_ = port == 0 ? bind_to_any_port(host) : (bind_to_port(host, port) ? port : -1);
-    if (port_ <= 0)
-        throw std::system_error(
-            errno, std::generic_category(), "cannot listen on " + host + " port " + std::to_string(port));
-    ::listen(listener_, kBacklog);
-    accepting_ = std::thread([this] {
-        accepting_id_ = std::this_thread::get_id();
-        listen_after_bind();
-    });
-    // stop() does nothing to a server that does not run yet.
-    while (!is_running())
-        std::this_thread::yield();
+    listener_.emplace(host, port, log_);
+    pool_.emplace(options_.threads, options_.queue);
+    port_ = listener_->port();
+    svr_sock_ = listener_->descriptor(); // without one httplib cuts its answers off
+    listening_ = true;
+    accepting_ = std::thread([this] { accept_all(); });
+}
+
+void GuardedServer::accept_all()
+{
+    for (int fd = listener_->accept(); fd >= 0; fd = listener_->accept()) {
+        try {
+            connections_.add(fd);
+            if (!pool_->enqueue([this, fd] { handle_connection(fd); })) refuse_unread(fd);
+        } catch (const std::exception& error) { // no memory for it: the next may find some
+            connections_.close(fd);
+            log_.write(LogLevel::error, "connection_failure", {{"what", error.what()}});
+        }
+    }
+    listening_ = false;
+    if (listener_->broken() == 0) return;
+    log_.write(
+        LogLevel::error,
+        "listener_broken",
+        {{"port", std::int64_t{port_}}, {"what", std::generic_category().message(listener_->broken())}});
+    if (options_.on_deaf) options_.on_deaf();
 }
 
 void GuardedServer::stop()
 {
     stopping_ = true;
     if (!accepting_.joinable()) return;
-    Server::stop();
+    listener_->stop();
     accepting_.join();
+    if (!pool_->finish_by(std::chrono::steady_clock::now() + options_.drain))
+        log_.write(LogLevel::warning,
+                   "connections_cut_off",
+                   {{"count", static_cast<std::int64_t>(connections_.cut())}});
+    pool_->shutdown();
+    listener_.reset();
 }
 
-bool GuardedServer::process_and_close_socket(socket_t sock)
+// Not a word is read, and nothing here may block: this is the accepting thread.
+void GuardedServer::refuse_unread(int fd)
 {
-    fcntl(sock, F_SETFD, FD_CLOEXEC); // the importer inherits no connections
-    ConnectionStream stream(sock, options_.stream);
+    static constexpr std::string_view answer =
+        "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 1\r\n"
+        "Content-Length: 0\r\n\r\n";
+    if (send(fd, answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
+        log_.write(LogLevel::warning, "refusal_unsent");
+    connections_.close(fd);
+    log_.write(
+        LogLevel::warning, "connection_refused", {{"reason", "every thread is taken and the queue is full"}});
+}
+
+void GuardedServer::handle_connection(int fd)
+{
     try {
-        if (std::this_thread::get_id() == accepting_id_.load()) {
-            // WorkerPool had no room. Not a word is read, and nothing here may block.
-            static const std::string answer =
-                "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 1\r\n"
-                "Content-Length: 0\r\n\r\n";
-            if (send(sock, answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
-                log_.write(LogLevel::warning, "refusal_unsent");
-            log_.write(LogLevel::warning,
-                       "connection_refused",
-                       {{"reason", "every thread is taken and the queue is full"}});
-        } else {
-            serve(stream);
-        }
+        ConnectionStream stream(fd, options_.stream);
+        serve(stream);
     } catch (const std::exception& error) {
         log_.write(LogLevel::error, "connection_failure", {{"what", error.what()}});
     }
-    ::shutdown(sock, SHUT_RDWR);
-    ::close(sock);
-    return true;
+    connections_.close(fd);
 }
 
 void GuardedServer::serve(ConnectionStream& stream)
 {
     for (std::size_t number = 1; number <= options_.requests_per_connection; ++number) {
         std::string block;
-        const auto give_up = [&] { return stopping_ || (number > 1 && pool_.load()->backlog()); };
+        const auto give_up = [&] { return stopping_ || (number > 1 && pool_->backlog()); };
         switch (stream.await_head(block, give_up)) {
         case ConnectionStream::Await::closed:
             return;
@@ -209,7 +212,7 @@ void GuardedServer::serve(ConnectionStream& stream)
         case ConnectionStream::Await::ready:
             break;
         }
-        const bool last = number == options_.requests_per_connection || stopping_;
+        const bool last = number == options_.requests_per_connection || give_up();
         if (!serve_one(stream, block, last)) return;
     }
 }

@@ -2,18 +2,25 @@
 // that reads a head, refuses what is doubtful, lets httplib have the rest, and logs a line a request.
 //
 // Every answer carries X-Request-Id; every error, also httplib's own, is application/problem+json.
+// Of httplib only the reading of requests and the writing of answers is used: its accept loop closes the
+// listener for good on errors that pass, and cuts off what is under way when it stops.
 // Threads  start() and stop() from one; `dispatch` is called from many at once.
-// Errors   start() throws std::system_error that names host and port.
+// Errors   start() throws std::system_error that names host and port. A listener that breaks later is logged
+//          and told through `on_deaf`: nobody can be reached through it any more.
 #pragma once
 
 #include "server/http/guard/connection_stream.h"
+#include "server/http/guard/listener.h"
+#include "server/http/guard/open_connections.h"
 #include "server/http/guard/worker_pool.h"
 #include "server/log/log.h"
 
 #include <httplib.h>
 
 #include <atomic>
+#include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -23,6 +30,8 @@ struct GuardOptions {
     std::size_t threads = 16;
     std::size_t queue = 256; // connections that wait for a thread; beyond: 503 at once
     std::size_t requests_per_connection = 1000;
+    std::chrono::milliseconds drain{5000}; // what is under way when the server stops has so long to end
+    std::function<void()> on_deaf;         // called once, from a thread of the server; must not call stop()
     StreamLimits stream;
 };
 
@@ -42,11 +51,16 @@ public:
     ~GuardedServer() override;
 
     void start(const std::string& host, int port);
-    void stop(); // answers what is under way
+    // Accepts nothing more, answers what is under way, and cuts off what is not done after `drain`. Handlers
+    // must heed request.progress: one that does not is waited for.
+    void stop();
     int port() const { return port_; }
+    bool listening() const { return listening_; }
 
 private:
-    bool process_and_close_socket(socket_t sock) override;
+    void accept_all();
+    void handle_connection(int fd);
+    void refuse_unread(int fd);
     void register_handlers(const Dispatch& dispatch);
     void serve(ConnectionStream& stream);
     bool serve_one(ConnectionStream& stream, const std::string& block, bool last);
@@ -60,11 +74,11 @@ private:
     GuardOptions options_;
     const Log& log_;
     int port_ = 0;
-    socket_t listener_ = -1;
-    std::atomic<WorkerPool*> pool_ = nullptr; // httplib owns it
-    std::atomic<bool> stopping_ = false;
+    OpenConnections connections_;
+    std::optional<Listener> listener_;
+    std::optional<WorkerPool> pool_;
+    std::atomic<bool> stopping_ = false, listening_ = false;
     std::thread accepting_;
-    std::atomic<std::thread::id> accepting_id_;
 };
 
 } // namespace server

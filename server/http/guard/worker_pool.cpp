@@ -20,19 +20,15 @@ bool WorkerPool::add_thread()
     }
 }
 
-void WorkerPool::enqueue(std::function<void()> task)
+bool WorkerPool::enqueue(std::function<void()> task)
 {
-    {
-        const std::lock_guard lock(mutex_);
-        const bool taken =
-            idle_ > queue_.size() || add_thread() || (queue_.size() < max_queue_ && !threads_.empty());
-        if (taken) {
-            queue_.push_back(std::move(task));
-            changed_.notify_one();
-            return;
-        }
-    }
-    task();
+    const std::lock_guard lock(mutex_);
+    const bool taken =
+        idle_ > queue_.size() || add_thread() || (queue_.size() < max_queue_ && !threads_.empty());
+    if (!taken) return false;
+    queue_.push_back(std::move(task));
+    changed_.notify_one();
+    return true;
 }
 
 void WorkerPool::work()
@@ -45,10 +41,19 @@ void WorkerPool::work()
         if (queue_.empty()) return;
         const std::function<void()> task = std::move(queue_.front());
         queue_.pop_front();
+        ++busy_;
         lock.unlock();
         task();
         lock.lock();
+        --busy_;
+        if (busy_ == 0 && queue_.empty()) finished_.notify_all();
     }
+}
+
+bool WorkerPool::finish_by(std::chrono::steady_clock::time_point deadline)
+{
+    std::unique_lock lock(mutex_);
+    return finished_.wait_until(lock, deadline, [this] { return busy_ == 0 && queue_.empty(); });
 }
 
 bool WorkerPool::backlog() const

@@ -1,12 +1,11 @@
 // WorkerPool: the threads that connections are served on: made when they are first needed, bounded, with a
 // bounded queue before them.
 //
-// Threads  enqueue() and shutdown() from the accepting thread alone, the rest from any.
+// Threads  enqueue(), finish_by() and shutdown() from one at a time, the rest from any.
 // Cost     a thread that waits holds its stack's few touched pages.
 #pragma once
 
-#include <httplib.h>
-
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -17,16 +16,19 @@
 
 namespace server {
 
-class WorkerPool final : public httplib::TaskQueue {
+class WorkerPool {
 public:
-    // At most `threads` at work and `queue` connections waiting; what comes beyond runs on the accepting
-    // thread itself, which by that knows to refuse it.
+    // At most `threads` at work and `queue` connections waiting.
     WorkerPool(std::size_t threads, std::size_t queue) : max_threads_(threads), max_queue_(queue) {}
-    ~WorkerPool() override;
+    ~WorkerPool();
+    WorkerPool(const WorkerPool&) = delete;
+    WorkerPool& operator=(const WorkerPool&) = delete;
 
-    void enqueue(std::function<void()> task) override;
-    void shutdown() override; // when the queue is empty and every task has returned
-    bool backlog() const;     // true: connections wait for a thread
+    bool enqueue(std::function<void()> task); // false: there is no room for it
+    bool backlog() const;                     // true: connections wait for a thread
+    // Waits until nothing is queued or at work; false if that is not so by `deadline`.
+    bool finish_by(std::chrono::steady_clock::time_point deadline);
+    void shutdown(); // when the queue is empty and every task has returned
 
 private:
     void work();
@@ -34,10 +36,10 @@ private:
 
     const std::size_t max_threads_, max_queue_;
     mutable std::mutex mutex_;
-    std::condition_variable changed_;
+    std::condition_variable changed_, finished_;
     std::deque<std::function<void()>> queue_;
     std::vector<std::thread> threads_;
-    std::size_t idle_ = 0;
+    std::size_t idle_ = 0, busy_ = 0;
     bool stopping_ = false;
 };
 

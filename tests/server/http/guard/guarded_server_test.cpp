@@ -1,4 +1,5 @@
 #include "server/http/guard/guarded_server.h"
+#include "tests/support/listening_sockets.h"
 #include "tests/support/raw_http.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +12,11 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <system_error>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -331,6 +335,89 @@ TEST_F(Guarded, StopEndsWaitsAndAnswersThem)
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->status, 200);
     EXPECT_THROW(RawConnection{port}, std::runtime_error);
+}
+
+TEST_F(Guarded, StopAnswersWhatHasComeAndIsUnderWay)
+{
+    GuardOptions options;
+    options.drain = std::chrono::minutes(5);
+    TearDown();
+    start(options);
+    RawConnection connection(port);
+    ASSERT_TRUE(connection.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
+    ASSERT_TRUE(connection.read_head()); // its body is on the way
+    ASSERT_TRUE(connection.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    auto stopped = std::async(std::launch::async, [this] { server_->stop(); });
+    EXPECT_EQ(connection.read_bytes(kBig), kBig);
+    const auto second = connection.read();
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->body, "ok");
+    EXPECT_EQ(second->header("connection"), "close");
+    stopped.wait();
+}
+
+TEST_F(Guarded, StopWaitsForASlowReaderNoLongerThanItsDrain)
+{
+    GuardOptions options;
+    options.drain = milliseconds(100);
+    options.stream.idle_write = std::chrono::hours(1);
+    TearDown();
+    start(options);
+    RawConnection slow(port, 4096);
+    ASSERT_TRUE(slow.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
+    ASSERT_TRUE(slow.read_head());
+    RawConnection silent(port); // a header that does not come
+    ASSERT_TRUE(silent.send("GET / HTTP/1.1\r\n"));
+    auto stopped = std::async(std::launch::async, [this] { server_->stop(); });
+    EXPECT_EQ(stopped.wait_for(std::chrono::seconds(4)), std::future_status::ready);
+    slow.hang_up();
+}
+
+TEST_F(Guarded, SaysWhenItCannotListenAnyMore)
+{
+    std::promise<void> told;
+    GuardOptions options;
+    options.on_deaf = [&told] { told.set_value(); };
+    TearDown();
+    start(options);
+    EXPECT_TRUE(server_->listening());
+    RawConnection connection(port);
+    ASSERT_TRUE(connection.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    ASSERT_TRUE(connection.read());
+    ::shutdown(test_support::listening_sockets().at(port), SHUT_RDWR);
+    ASSERT_EQ(told.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+    EXPECT_FALSE(server_->listening());
+    server_->stop();
+}
+
+TEST_F(Guarded, SaysNothingOfDeafnessWhenItIsStopped)
+{
+    bool told = false;
+    GuardOptions options;
+    options.on_deaf = [&told] { told = true; };
+    TearDown();
+    start(options);
+    server_->stop();
+    EXPECT_FALSE(told);
+    EXPECT_FALSE(server_->listening());
+}
+
+TEST_F(Guarded, AcceptsAgainAfterItHadNoDescriptors)
+{
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+    const int next = dup(0);
+    close(next);
+    const rlimit one_more{static_cast<rlim_t>(next) + 1, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &one_more), 0);
+    RawConnection connection(port); // takes the last one
+    std::this_thread::sleep_for(milliseconds(100));
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+    ASSERT_TRUE(connection.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    const auto answer = connection.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->body, "ok");
+    EXPECT_TRUE(server_->listening());
 }
 
 TEST_F(Guarded, RefusesAPortThatIsTaken)
