@@ -14,8 +14,6 @@
 
 namespace renderer {
 
-namespace {
-
 unsigned usable_cores()
 {
     cpu_set_t set;
@@ -24,8 +22,6 @@ unsigned usable_cores()
         return static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
     return std::max(1u, std::thread::hardware_concurrency());
 }
-
-} // namespace
 
 // One loop at a time: threads sleep until `generation` moves, claim items from `next`, and report back in
 // `busy`.

@@ -14,9 +14,11 @@
 
 namespace renderer {
 
+unsigned usable_cores(); // those this process may run on, 1 at least
+
 class ThreadPool {
 public:
-    // `threads` 0: one for every core this process may use.
+    // `threads` 0: usable_cores().
     explicit ThreadPool(unsigned threads = 0);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;

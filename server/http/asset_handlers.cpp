@@ -4,8 +4,9 @@
 #include "server/http/asset_intake.h"
 #include "server/http/body.h"
 #include "server/http/guard/guarded_server.h"
-#include "server/http/spelling.h"
+#include "server/http/printable.h"
 
+#include <future>
 #include <memory>
 #include <stop_token>
 
@@ -107,7 +108,26 @@ void AssetHandlers::info(Exchange& exchange)
     if (!is_digest(digest) || !blobs_.has(kAsset, digest))
         return reply_problem(exchange, no_such_asset(digest));
     blobs_.touch(kAsset, digest);
-    reply_json(exchange, 200, api::write_asset_info(imports_.info(digest, std::stop_token())));
+    auto info = imports_.known_info(digest);
+    if (!info) {
+        const auto place = waiters_.enter(); // an import takes its time, and this thread with it
+        if (!place) return reply_problem(exchange, too_many_waiters(limits_));
+        info = import_while_wanted(exchange, digest);
+    }
+    if (!info)
+        return reply_problem(exchange,
+                             problem(503, "draining", "the service stops: ask again when it is back"));
+    reply_json(exchange, 200, api::write_asset_info(*info));
+}
+
+std::optional<api::AssetInfo> AssetHandlers::import_while_wanted(Exchange& exchange,
+                                                                 const std::string& digest)
+{
+    std::stop_source stop;
+    auto imported = std::async(std::launch::async, [&] { return imports_.info(digest, stop.get_token()); });
+    while (imported.wait_for(kGlance) != std::future_status::ready)
+        if (!exchange.still_wanted()) stop.request_stop();
+    return imported.get();
 }
 
 } // namespace server

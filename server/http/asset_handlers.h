@@ -3,16 +3,24 @@
 
 #include "renderer/description/limits.h"
 #include "server/http/router.h"
+#include "server/http/waiters.h"
 #include "server/import/import_service.h"
 #include "server/store/blob_store.h"
 #include "server/store/store.h"
+
+#include <optional>
+#include <string>
 
 namespace server {
 
 class AssetHandlers {
 public:
-    AssetHandlers(Store& store, BlobStore& blobs, ImportService& imports, const renderer::Limits& limits)
-        : store_(store), blobs_(blobs), imports_(imports), limits_(limits)
+    AssetHandlers(Store& store,
+                  BlobStore& blobs,
+                  ImportService& imports,
+                  const renderer::Limits& limits,
+                  Waiters& waiters)
+        : store_(store), blobs_(blobs), imports_(imports), limits_(limits), waiters_(waiters)
     {
     }
 
@@ -24,11 +32,14 @@ private:
     void get(Exchange& exchange);
     void info(Exchange& exchange);
     void store_body(Exchange& exchange, const std::string& announced);
+    // Imports while the client is there; nothing if it left or the server stops.
+    std::optional<api::AssetInfo> import_while_wanted(Exchange& exchange, const std::string& digest);
 
     Store& store_;
     BlobStore& blobs_;
     ImportService& imports_;
     const renderer::Limits& limits_;
+    Waiters& waiters_;
 };
 
 } // namespace server

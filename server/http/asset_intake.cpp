@@ -1,5 +1,6 @@
 #include "server/http/asset_intake.h"
 
+#include "api/words/limit_words.h"
 #include "server/http/exchange.h"
 
 #include <span>
@@ -33,8 +34,8 @@ std::variant<StoredAsset, api::ProblemDetails> AssetIntake::commit(const std::st
                        "storage_full",
                        "all assets together would be over the limit total_asset_bytes, " +
                            std::to_string(limits_.total_asset_bytes) +
-                           " bytes, and those stored are in use; the service's flag "
-                           "--limit-total-asset-bytes raises it");
+                           " bytes, and those stored are in use; the service's flag " +
+                           api::flag_of("total_asset_bytes") + " raises it");
     const bool fresh = writer_->commit();
     blobs_.touch(BlobStore::Kind::asset, digest);
     return StoredAsset{digest, bytes, fresh};

@@ -1,5 +1,7 @@
 #include "server/http/body.h"
 
+#include "api/words/limit_words.h"
+
 #include <algorithm>
 #include <charconv>
 
@@ -8,18 +10,14 @@ namespace server {
 api::ProblemDetails
 over_limit(const std::string& what, std::uint64_t renderer::Limits::*limit, const renderer::Limits& limits)
 {
-    std::string name, unit;
-    for (const renderer::LimitEntry& entry : renderer::limit_table())
-        if (entry.value == limit) {
-            name = entry.name;
-            unit = *entry.unit != '\0' ? std::string(" ") + entry.unit : std::string();
-        }
-    std::string flag = "--limit-" + name;
-    std::replace(flag.begin(), flag.end(), '_', '-');
+    const auto& entry = *std::find_if(renderer::limit_table().begin(),
+                                      renderer::limit_table().end(),
+                                      [&](const auto& row) { return row.value == limit; });
+    const std::string unit = *entry.unit != '\0' ? std::string(" ") + entry.unit : std::string();
     return problem(413,
                    "too_large",
-                   what + " is over the limit " + name + ", " + std::to_string(limits.*limit) + unit +
-                       "; the service's flag " + flag + " raises it");
+                   what + " is over the limit " + entry.name + ", " + std::to_string(limits.*limit) + unit +
+                       "; the service's flag " + api::flag_of(entry.name) + " raises it");
 }
 
 std::optional<api::ProblemDetails> refuse_without_length(const Exchange& exchange, const std::string& what)

@@ -1,5 +1,6 @@
 #include "server/http/exchange.h"
 
+#include "api/words/limit_words.h"
 #include "server/http/byte_range.h"
 #include "server/http/guard/guarded_server.h"
 
@@ -126,6 +127,17 @@ api::ProblemDetails problem(int status, std::string code, std::string detail)
     details.detail = std::move(detail);
     details.retryable = status == 429 || status == 503 || status == 504;
     return details;
+}
+
+api::ProblemDetails too_many_waiters(const renderer::Limits& limits)
+{
+    return problem(
+        429,
+        "too_many_waiters",
+        std::to_string(limits.waiters) +
+            " requests wait already, the limit waiters; ask later or, for a job, without Prefer: wait; "
+            "the service's flag " +
+            api::flag_of("waiters") + " raises it");
 }
 
 api::ProblemDetails query_problem(std::string code, std::string detail)

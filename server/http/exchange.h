@@ -2,6 +2,7 @@
 #pragma once
 
 #include "api/problem.h"
+#include "renderer/description/limits.h"
 
 #include <httplib.h>
 
@@ -49,6 +50,8 @@ void reply_payload(Exchange& exchange, const Payload& payload);
 void reply_json_with_etag(Exchange& exchange, const std::string& json, const std::string& etag);
 
 api::ProblemDetails problem(int status, std::string code, std::string detail);
+// 429: every place for requests that wait is taken.
+api::ProblemDetails too_many_waiters(const renderer::Limits& limits);
 // 422 invalid_query.
 api::ProblemDetails query_problem(std::string code, std::string detail);
 

@@ -62,8 +62,9 @@ struct HttpServer::State {
           const Log& log,
           HttpOptions wanted)
         : options(std::move(wanted)), documents(job_service, store, options.limits),
-          assets(store, blobs, imports, options.limits), jobs(job_service, store, blobs, options.limits),
-          router(log), health_router(log), main(telling(guard_options(options)), log, dispatch_to(router)),
+          waiters(options.limits.waiters), assets(store, blobs, imports, options.limits, waiters),
+          jobs(job_service, store, blobs, options.limits, waiters), router(log), health_router(log),
+          main(telling(guard_options(options)), log, dispatch_to(router)),
           health(telling(health_options(options)), log, dispatch_to(health_router))
     {
         documents.add_routes(router);
@@ -81,6 +82,7 @@ struct HttpServer::State {
     const HttpOptions options;
     std::once_flag deaf;
     DocumentHandlers documents;
+    Waiters waiters; // of both that follow
     AssetHandlers assets;
     JobHandlers jobs;
     Router router, health_router;

@@ -2,8 +2,8 @@
 
 #include "server/http/list_query.h"
 #include "server/http/negotiation.h"
-#include "server/http/spelling.h"
-#include "server/http/submission.h"
+#include "server/http/printable.h"
+#include "server/http/submit_words.h"
 
 #include <algorithm>
 #include <chrono>
@@ -14,9 +14,6 @@ namespace server {
 namespace {
 
 using std::chrono::milliseconds;
-
-// How often a waiting request looks whether its client is still there.
-constexpr milliseconds kGlance{250};
 
 bool is_job_id(const std::string& text)
 {
@@ -82,12 +79,7 @@ bool JobHandlers::enter_wait(Exchange& exchange, std::optional<Waiters::Place>& 
     if (!preferred) return true;
     if (seconds > 0) place = waiters_.enter();
     if (seconds > 0 && !place) {
-        reply_problem(exchange,
-                      problem(429,
-                              "too_many_waiters",
-                              std::to_string(limits_.waiters) +
-                                  " requests wait already, the limit waiters; ask without Prefer: wait, "
-                                  "or raise it with the service's flag --limit-waiters"));
+        reply_problem(exchange, too_many_waiters(limits_));
         return false;
     }
     exchange.response.set_header("Preference-Applied", "wait=" + std::to_string(seconds));
@@ -113,7 +105,7 @@ void JobHandlers::submit(Exchange& exchange)
 {
     const Acceptance accept = read_accept(exchange.header("Accept"));
     if (accept.only_images && !accept.png) return reply_problem(exchange, only_png());
-    auto read = read_submission(exchange, store_, blobs_, limits_);
+    auto read = read_submit_words(exchange, store_, blobs_, limits_);
     if (auto* refusal = std::get_if<api::ProblemDetails>(&read))
         return reply_problem(exchange, std::move(*refusal));
     std::optional<Waiters::Place> place;

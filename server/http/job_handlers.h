@@ -16,8 +16,9 @@ namespace server {
 
 class JobHandlers {
 public:
-    JobHandlers(JobService& jobs, Store& store, BlobStore& blobs, const renderer::Limits& limits)
-        : jobs_(jobs), store_(store), blobs_(blobs), limits_(limits), waiters_(limits.waiters)
+    JobHandlers(
+        JobService& jobs, Store& store, BlobStore& blobs, const renderer::Limits& limits, Waiters& waiters)
+        : jobs_(jobs), store_(store), blobs_(blobs), limits_(limits), waiters_(waiters)
     {
     }
 
@@ -45,7 +46,7 @@ private:
     Store& store_;
     BlobStore& blobs_;
     const renderer::Limits& limits_;
-    Waiters waiters_;
+    Waiters& waiters_;
 };
 
 } // namespace server

@@ -1,6 +1,7 @@
 #include "server/http/list_query.h"
 
-#include "server/http/spelling.h"
+#include "api/words/sentences.h"
+#include "server/http/printable.h"
 
 #include <algorithm>
 #include <charconv>
@@ -34,12 +35,10 @@ std::optional<api::Problem> read_state(const std::string& text, ListQuery& query
         all += (all.empty() ? "" : ", ") + name;
     }
     if (query.state) return std::nullopt;
-    const std::string near = nearest(text, known);
     return api::Problem{"",
                         "invalid_parameter",
-                        "state \"" + printable(text) + "\" is not known" +
-                            (near.empty() ? "" : "; did you mean \"" + near + "\"?") + " (known: " + all +
-                            ")"};
+                        "state \"" + printable(text) + "\" is not known" + api::did_you_mean(text, known) +
+                            " (known: " + all + ")"};
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "server/http/router.h"
 
-#include "server/http/spelling.h"
+#include "api/words/sentences.h"
+#include "server/http/printable.h"
 #include "server/store/store.h"
 
 #include <algorithm>
@@ -49,11 +50,10 @@ std::vector<api::Problem> query_faults(const httplib::Request& request, const st
             std::string all;
             for (const std::string& name : known)
                 all += (all.empty() ? "" : ", ") + name;
-            const std::string near = nearest(key, known);
             faults.push_back({"",
                               "unknown_parameter",
                               "query key \"" + printable(key) + "\" is not known here" +
-                                  (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
+                                  api::did_you_mean(key, known) +
                                   (all.empty() ? " (there are none)" : " (known: " + all + ")")});
         }
     }

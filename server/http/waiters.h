@@ -2,11 +2,15 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <utility>
 
 namespace server {
+
+// How often a waiting request looks whether its client is still there.
+inline constexpr std::chrono::milliseconds kGlance{250};
 
 class Waiters {
 public:

@@ -3,7 +3,6 @@
 #include "server/import/import_cache.h"
 #include "server/import/mesh_figures.h"
 #include "server/import/run_import.h"
-#include "server/log/log.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +15,6 @@
 #include <new>
 #include <set>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 namespace server {
@@ -40,6 +38,22 @@ std::string main_key(const ImportRequest& request)
     return request.digest + extension_of(request.name);
 }
 
+// An asset by itself, as /info looks at it.
+ImportRequest bare_request(const std::string& digest)
+{
+    return {"", digest, {}, renderer::BvhSplit::sah};
+}
+
+api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const KnownImport& known)
+{
+    api::AssetInfo info;
+    info.digest = digest;
+    info.bytes = bytes;
+    info.mesh = known.figures;
+    if (known.failure) info.fault = api::Problem{"", known.failure->code, known.failure->detail};
+    return info;
+}
+
 ImportFailure out_of_memory()
 {
     return {"import_out_of_memory",
@@ -49,8 +63,12 @@ ImportFailure out_of_memory()
 } // namespace
 
 struct ImportService::State {
-    State(std::filesystem::path program_path, BlobStore& store, const renderer::Limits& bounds)
-        : program(std::move(program_path)), blobs(store), limits(bounds), cache(bounds.mesh_cache_bytes)
+    State(std::filesystem::path program_path,
+          BlobStore& store,
+          const renderer::Limits& bounds,
+          const Log& log_to)
+        : program(std::move(program_path)), blobs(store), limits(bounds), log(log_to),
+          cache(bounds.mesh_cache_bytes)
     {
     }
 
@@ -139,12 +157,12 @@ struct ImportService::State {
         repeatable = end.repeatable;
         if (auto* asset = std::get_if<ImportedAsset>(&*end.outcome)) return std::move(*asset);
         auto& failure = std::get<ImportFailure>(*end.outcome);
-        Log().write(LogLevel::info,
-                    "import_failed",
-                    {{"digest", request.digest},
-                     {"code", failure.code},
-                     {"detail", failure.detail},
-                     {"importer_log", end.log}});
+        log.write(LogLevel::info,
+                  "import_failed",
+                  {{"digest", request.digest},
+                   {"code", failure.code},
+                   {"detail", failure.detail},
+                   {"importer_log", end.log}});
         return std::move(failure);
     }
 
@@ -157,7 +175,8 @@ struct ImportService::State {
     const std::filesystem::path program;
     BlobStore& blobs;
     const renderer::Limits limits;
-    const std::size_t most_children = std::max(1u, std::thread::hardware_concurrency());
+    const Log log;
+    const std::size_t most_children = renderer::usable_cores();
     std::atomic<std::uint64_t> imports_run{0};
     mutable std::mutex mutex;
     std::condition_variable_any changed;
@@ -165,8 +184,11 @@ struct ImportService::State {
     std::set<std::string> in_flight; // under mutex: main keys
 };
 
-ImportService::ImportService(std::filesystem::path program, BlobStore& blobs, const renderer::Limits& limits)
-    : state_(std::make_unique<State>(std::move(program), blobs, limits))
+ImportService::ImportService(std::filesystem::path program,
+                             BlobStore& blobs,
+                             const renderer::Limits& limits,
+                             const Log& log)
+    : state_(std::make_unique<State>(std::move(program), blobs, limits, log))
 {
 }
 
@@ -215,40 +237,43 @@ std::variant<std::monostate, ImportFailure> ImportService::known_failure(const I
     return std::monostate();
 }
 
-api::AssetInfo ImportService::info(const std::string& digest, std::stop_token stop)
+std::optional<api::AssetInfo> ImportService::info(const std::string& digest, std::stop_token stop)
 {
-    api::AssetInfo info;
-    info.digest = digest;
-    info.bytes = state_->blobs.size(kAsset, digest).value_or(0);
-    const auto tell_fault = [&](const ImportFailure& failure) {
-        info.fault = api::Problem{"", failure.code, failure.detail};
-    };
+    const std::uint64_t bytes = state_->blobs.size(kAsset, digest).value_or(0);
     const auto answer = [&](const KnownImport& known) -> std::optional<api::AssetInfo> {
-        if (known.failure) tell_fault(*known.failure);
-        info.mesh = known.figures;
-        return info;
+        return info_of(digest, bytes, known);
     };
+    const ImportRequest request = bare_request(digest);
+    KnownImport known{main_key(request), {}, {}, {}, {}};
     try {
-        const ImportRequest request{"", digest, {}, renderer::BvhSplit::sah};
         bool stopped = false;
-        if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return std::move(*found);
-        if (stopped) return info;
+        if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return found;
+        if (stopped) return std::nullopt;
         const State::Flight flight(*state_, main_key(request));
 
-        KnownImport known{main_key(request), {}, {}, {}, {}};
         bool repeatable = false;
         const State::Imported imported = state_->import(request, known.answers, repeatable, stop);
-        if (std::holds_alternative<std::monostate>(imported)) return info;
+        if (std::holds_alternative<std::monostate>(imported)) return std::nullopt;
         if (const auto* failure = std::get_if<ImportFailure>(&imported))
             known.failure = *failure;
         else
             known.figures = mesh_figures(std::get<ImportedAsset>(imported));
-        static_cast<void>(answer(known));
+        auto info = answer(known);
         if (repeatable) state_->remember(std::move(known));
+        return info;
     } catch (const std::bad_alloc&) {
-        tell_fault(out_of_memory());
+        known.failure = out_of_memory();
+        return answer(known);
     }
-    return info;
+}
+
+std::optional<api::AssetInfo> ImportService::known_info(const std::string& digest) const
+{
+    const std::uint64_t bytes = state_->blobs.size(kAsset, digest).value_or(0);
+    const std::lock_guard lock(state_->mutex);
+    const KnownImport* known = state_->cache.peek(main_key(bare_request(digest)), {});
+    if (!known) return std::nullopt;
+    return info_of(digest, bytes, *known);
 }
 
 std::uint64_t ImportService::cached_bytes() const

@@ -17,11 +17,13 @@
 #include "renderer/description/limits.h"
 #include "renderer/parallel/thread_pool.h"
 #include "server/import/import_failure.h"
+#include "server/log/log.h"
 #include "server/store/blob_store.h"
 
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <variant>
@@ -44,7 +46,10 @@ struct ImportRequest {
 class ImportService {
 public:
     // `program`: path of heliograph-import.
-    ImportService(std::filesystem::path program, BlobStore& blobs, const renderer::Limits& limits);
+    ImportService(std::filesystem::path program,
+                  BlobStore& blobs,
+                  const renderer::Limits& limits,
+                  const Log& log);
     ~ImportService();
     ImportService(const ImportService&) = delete;
     ImportService& operator=(const ImportService&) = delete;
@@ -54,8 +59,11 @@ public:
     import(const ImportRequest& request, renderer::ThreadPool& pool, std::stop_token stop);
     // A fault known from an earlier import of this very request; no work is done. For checks at POST.
     std::variant<std::monostate, ImportFailure> known_failure(const ImportRequest& request) const;
-    // What GET /v1/assets/{digest}/info tells; imports (without building a BVH) if not yet known.
-    api::AssetInfo info(const std::string& digest, std::stop_token stop);
+    // What GET /v1/assets/{digest}/info tells; imports (without building a BVH) if not yet known. Nothing if
+    // `stop` was requested.
+    std::optional<api::AssetInfo> info(const std::string& digest, std::stop_token stop);
+    // The same if it is known; no work is done.
+    std::optional<api::AssetInfo> known_info(const std::string& digest) const;
 
     std::uint64_t cached_bytes() const;
     std::uint64_t imports_run() const; // child processes started so far

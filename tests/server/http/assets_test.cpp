@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -264,6 +267,92 @@ TEST(Assets, InfoTellsWhatAMeshHoldsAndWhyAnotherDoesNotImport)
     EXPECT_EQ(fault.status, 200);
     EXPECT_NE(fault.body.find("truncated"), std::string::npos) << fault.body;
     EXPECT_EQ(code_of(service.get(path_of("else") + "/info")), "not_found");
+}
+
+// An importer that never ends, for tests of who waits for it; its process's number stands in `started`.
+class EndlessImports {
+public:
+    EndlessImports()
+    {
+        program = folder_.write("importer",
+                                "#!/bin/sh\necho $$ > '" + started() + ".part'\n/bin/mv '" + started() +
+                                    ".part' '" + started() + "'\nexec /bin/sleep 1000\n");
+        std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    }
+    std::string started() const { return folder_.file("started"); }
+    bool wait_for_start() const
+    {
+        return eventually([this] { return std::filesystem::exists(started()); });
+    }
+    bool wait_for_end() const // of the child
+    {
+        const auto pid = static_cast<pid_t>(std::stoi(tests::bytes_of(started())));
+        return eventually([pid] { return kill(pid, 0) != 0; });
+    }
+
+    std::string program;
+
+private:
+    template <typename Predicate>
+    static bool eventually(const Predicate& holds)
+    {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+        while (!holds() && std::chrono::steady_clock::now() < end)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        return holds();
+    }
+
+    tests::TempFolder folder_;
+};
+
+TEST(Assets, InfoEndsItsImportWhenTheClientHangsUp)
+{
+    const EndlessImports endless;
+    const LiveService service({}, endless.program);
+    const std::string mesh = "v 0 0 0";
+    service.post("/v1/assets", mesh);
+    RawConnection asks(service.http.port());
+    asks.send("GET " + path_of(mesh) + "/info HTTP/1.1\r\nHost: a\r\n\r\n");
+    ASSERT_TRUE(endless.wait_for_start());
+    asks.hang_up();
+    EXPECT_TRUE(endless.wait_for_end());
+}
+
+TEST(Assets, InfoEndsItsImportWhenTheServiceStops)
+{
+    const EndlessImports endless;
+    LiveService service({}, endless.program);
+    const std::string mesh = "v 0 0 0";
+    service.post("/v1/assets", mesh);
+    RawConnection asks(service.http.port());
+    asks.send("GET " + path_of(mesh) + "/info HTTP/1.1\r\nHost: a\r\n\r\n");
+    ASSERT_TRUE(endless.wait_for_start());
+    service.http.stop();
+    const auto answer = asks.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 503);
+    EXPECT_EQ(code_of(*answer), "draining");
+    EXPECT_NE(answer->header("retry-after"), "");
+}
+
+TEST(Assets, InfoTakesAPlaceAmongTheWaitingUnlessItIsKnown)
+{
+    renderer::Limits limits;
+    limits.waiters = 1;
+    const LiveService service(limits);
+    const std::string known = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", unknown = known + "f 1 3 2\n";
+    service.post("/v1/assets", known);
+    service.post("/v1/assets", unknown);
+    EXPECT_EQ(service.get(path_of(known) + "/info").status, 200);
+    const std::string job = service.submit(tests::long_job()).header("location");
+    RawConnection waits(service.http.port());
+    waits.send("GET " + job + "/image HTTP/1.1\r\nHost: a\r\nPrefer: wait=60\r\n\r\n");
+    while (service.get(job, {{"Prefer", "wait=1"}}).status == 200) { // until the place is taken
+    }
+    const auto refused = service.get(path_of(unknown) + "/info");
+    EXPECT_EQ(refused.status, 429);
+    EXPECT_EQ(code_of(refused), "too_many_waiters");
+    EXPECT_EQ(service.get(path_of(known) + "/info").status, 200);
 }
 
 } // namespace

@@ -296,6 +296,8 @@ TEST(Jobs, ListingSaysWhatIsWrongWithItsQuery)
     const auto answer = service.get("/v1/jobs?stat=failed");
     EXPECT_EQ(code_of(answer), "invalid_query");
     EXPECT_NE(answer.body.find("did you mean \\\"state\\\"?"), std::string::npos) << answer.body;
+    EXPECT_NE(service.get("/v1/jobs?lable=a:b").body.find("did you mean \\\"label\\\"?"), std::string::npos);
+    EXPECT_EQ(service.get("/v1/jobs?zzzzzz=1").body.find("did you mean"), std::string::npos);
     const auto all = service.get("/v1/jobs?state=runing&label=x&limit=0&cursor=%20");
     EXPECT_EQ(json_of(all).at("errors").size(), 4u) << all.body;
     EXPECT_NE(all.body.find("running"), std::string::npos);

@@ -26,10 +26,10 @@ using test_support::RawConnection;
 
 class LiveService {
 public:
-    explicit LiveService(const renderer::Limits& limits = {})
+    explicit LiveService(const renderer::Limits& limits = {},
+                         const std::string& importer = HELIOGRAPH_BIN_DIR "/heliograph-import")
         : store(server::make_mem_store()), blobs(folder.path() / "blobs"),
-          imports(std::string(HELIOGRAPH_BIN_DIR) + "/heliograph-import", blobs, limits),
-          jobs(*store, blobs, imports, {limits, 1, log}),
+          imports(importer, blobs, limits, log), jobs(*store, blobs, imports, {limits, 1, log}),
           http(jobs, *store, blobs, imports, log, options(limits))
     {
         jobs.start();

@@ -1,7 +1,7 @@
 #include "server/http/byte_range.h"
 #include "server/http/exchange.h"
 #include "server/http/negotiation.h"
-#include "server/http/spelling.h"
+#include "server/http/printable.h"
 
 #include <gtest/gtest.h>
 
@@ -101,11 +101,8 @@ TEST(ReprDigest, IsTheDigestInBase64)
               "sha-256=:47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=:");
 }
 
-TEST(Spelling, FindsTheNearestWordAndNoFarOne)
+TEST(Printable, ShowsEveryOddByteAsAQuestionMark)
 {
-    EXPECT_EQ(server::nearest("stat", {"state", "label", "limit"}), "state");
-    EXPECT_EQ(server::nearest("lable", {"state", "label", "limit"}), "label");
-    EXPECT_EQ(server::nearest("zzzzzz", {"state", "label", "limit"}), "");
     EXPECT_EQ(server::printable("a\x1b[2J\xff"), "a?[2J?");
 }
 

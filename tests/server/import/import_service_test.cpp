@@ -35,8 +35,9 @@ protected:
     tests::TempFolder folder_;
     BlobStore blobs_{folder_.path() / "blobs"};
     renderer::Limits limits_;
+    server::Log log_{server::LogLevel::error};
     fs::path program_ = fs::path(HELIOGRAPH_BIN_DIR) / "heliograph-import";
-    server::ImportService imports_{program_, blobs_, limits_};
+    server::ImportService imports_{program_, blobs_, limits_, log_};
     renderer::ThreadPool pool_{2};
 };
 
@@ -98,7 +99,7 @@ TEST_F(ImportServiceTest, ForgetsFailuresThatMayNotComeAgain)
 {
     const std::string script = folder_.write("importer", "#!/bin/sh\nkill -KILL $$\n");
     fs::permissions(script, fs::perms::owner_all);
-    server::ImportService imports(script, blobs_, limits_);
+    server::ImportService imports(script, blobs_, limits_, log_);
     const ImportRequest request{"a.obj", put(kTriangle), {}};
     for (std::uint64_t i = 1; i <= 2; ++i) {
         const auto result = imports.import(request, pool_, {});
@@ -113,7 +114,7 @@ TEST_F(ImportServiceTest, RemembersACrashAndGoesOn)
 {
     const std::string script = folder_.write("importer", "#!/bin/sh\nkill -SEGV $$\n");
     fs::permissions(script, fs::perms::owner_all);
-    server::ImportService imports(script, blobs_, limits_);
+    server::ImportService imports(script, blobs_, limits_, log_);
     const ImportRequest request{"a.obj", put(kTriangle), {}};
     for (int i = 0; i < 2; ++i) {
         const auto result = imports.import(request, pool_, {});
@@ -121,6 +122,14 @@ TEST_F(ImportServiceTest, RemembersACrashAndGoesOn)
         EXPECT_EQ(std::get<ImportFailure>(result).code, "import_crashed");
     }
     EXPECT_EQ(imports.imports_run(), 1u);
+}
+
+TEST_F(ImportServiceTest, LogsAtTheLevelOfItsService)
+{
+    const std::string digest = put("v 0 0 0\n");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(code({"a.obj", digest, {}}), "no_triangles"); // told at level info
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(ImportServiceTest, TellsADigestThatIsNotUploaded)
@@ -168,21 +177,37 @@ TEST_F(ImportServiceTest, PreparesForEachSplit)
     EXPECT_EQ(imports_.imports_run(), 2u);
 }
 
+TEST_F(ImportServiceTest, HasNoInfoOfAMeshWhoseImportWasStopped)
+{
+    const std::string digest = put(kTriangle);
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_FALSE(imports_.info(digest, stop.get_token()));
+    EXPECT_FALSE(imports_.known_info(digest));
+    const auto info = imports_.info(digest, {});
+    ASSERT_TRUE(info);
+    const auto known = imports_.known_info(digest);
+    ASSERT_TRUE(known);
+    EXPECT_EQ(known->mesh->triangles, 1u);
+    EXPECT_EQ(known->bytes, info->bytes);
+}
+
 TEST_F(ImportServiceTest, TellsWhatIsInAMesh)
 {
     const std::string knot = tests::bytes_of(fs::path(HELIOGRAPH_ASSET_DIR) / "knot.glb");
     const std::string digest = put(knot);
-    const api::AssetInfo info = imports_.info(digest, {});
-    EXPECT_EQ(info.digest, digest);
-    EXPECT_EQ(info.bytes, knot.size());
-    ASSERT_TRUE(info.mesh);
-    EXPECT_FALSE(info.fault);
-    EXPECT_EQ(info.mesh->format, "glb");
-    EXPECT_EQ(info.mesh->triangles, 6144u);
-    EXPECT_TRUE(info.mesh->has_normals);
-    EXPECT_TRUE(info.mesh->has_uvs);
-    EXPECT_LT(info.mesh->lower[0], info.mesh->upper[0]);
-    EXPECT_EQ(imports_.info(digest, {}).mesh->triangles, 6144u);
+    const auto info = imports_.info(digest, {});
+    ASSERT_TRUE(info);
+    EXPECT_EQ(info->digest, digest);
+    EXPECT_EQ(info->bytes, knot.size());
+    ASSERT_TRUE(info->mesh);
+    EXPECT_FALSE(info->fault);
+    EXPECT_EQ(info->mesh->format, "glb");
+    EXPECT_EQ(info->mesh->triangles, 6144u);
+    EXPECT_TRUE(info->mesh->has_normals);
+    EXPECT_TRUE(info->mesh->has_uvs);
+    EXPECT_LT(info->mesh->lower[0], info->mesh->upper[0]);
+    EXPECT_EQ(imports_.info(digest, {})->mesh->triangles, 6144u);
     EXPECT_EQ(imports_.imports_run(), 1u);
     EXPECT_EQ(imports_.cached_bytes(), 0u); // no BVH is built for it
 }
@@ -194,19 +219,21 @@ TEST_F(ImportServiceTest, TellsDegenerateTrianglesAndUnusedVertices)
         "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n2 0 0\n9 9 "
         "9\n"
         "3 0 1 2\n3 0 1 3\n";
-    const api::AssetInfo info = imports_.info(put(ply), {});
-    ASSERT_TRUE(info.mesh);
-    EXPECT_EQ(info.mesh->degenerate_triangles, 1u);
-    EXPECT_EQ(info.mesh->vertices, 5u);
-    EXPECT_EQ(info.mesh->upper[0], 2); // of the vertices that are used
+    const auto info = imports_.info(put(ply), {});
+    ASSERT_TRUE(info);
+    ASSERT_TRUE(info->mesh);
+    EXPECT_EQ(info->mesh->degenerate_triangles, 1u);
+    EXPECT_EQ(info->mesh->vertices, 5u);
+    EXPECT_EQ(info->mesh->upper[0], 2); // of the vertices that are used
 }
 
 TEST_F(ImportServiceTest, TellsWhyAnAssetIsNoMesh)
 {
-    const api::AssetInfo info = imports_.info(put("\x89PNG\r\n"), {});
-    EXPECT_FALSE(info.mesh);
-    ASSERT_TRUE(info.fault);
-    EXPECT_EQ(info.fault->code, "unknown_format");
+    const auto info = imports_.info(put("\x89PNG\r\n"), {});
+    ASSERT_TRUE(info);
+    EXPECT_FALSE(info->mesh);
+    ASSERT_TRUE(info->fault);
+    EXPECT_EQ(info->fault->code, "unknown_format");
 }
 
 } // namespace

@@ -33,7 +33,8 @@ public:
          const std::filesystem::path& folder,
          const renderer::Limits& limits)
         : store(std::move(opened)), blobs(folder / "blobs"),
-          imports(HELIOGRAPH_BIN_DIR "/heliograph-import", blobs, limits),
+          imports(
+              HELIOGRAPH_BIN_DIR "/heliograph-import", blobs, limits, server::Log(server::LogLevel::error)),
           jobs(*store,
                blobs,
                imports,

@@ -1,4 +1,4 @@
-// Reading POST /v1/jobs: JSON in whatever wrapping curl puts it, or multipart with the files that the scene
+// SubmitWords from POST /v1/jobs: JSON in whatever wrapping curl puts it, or multipart with the files that the scene
 // names.
 #pragma once
 
@@ -15,6 +15,6 @@ namespace server {
 // The files of a multipart request are stored as assets when it returns.
 // 400, 411, 413, 415, 422, 503 as problems; StoreError is the world's.
 std::variant<SubmitWords, api::ProblemDetails>
-read_submission(Exchange& exchange, Store& store, BlobStore& blobs, const renderer::Limits& limits);
+read_submit_words(Exchange& exchange, Store& store, BlobStore& blobs, const renderer::Limits& limits);
 
 } // namespace server

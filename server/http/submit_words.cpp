@@ -1,11 +1,11 @@
-#include "server/http/submission.h"
+#include "server/http/submit_words.h"
 
 #include "server/http/asset_intake.h"
 #include "server/http/body.h"
 #include "server/http/guard/guarded_server.h"
 #include "server/http/multipart.h"
 #include "server/http/negotiation.h"
-#include "server/http/spelling.h"
+#include "server/http/printable.h"
 
 #include <algorithm>
 #include <cctype>
@@ -191,7 +191,7 @@ std::optional<api::ProblemDetails> add_headers(const Exchange& exchange, SubmitW
 
 } // namespace
 
-Read read_submission(Exchange& exchange, Store& store, BlobStore& blobs, const renderer::Limits& limits)
+Read read_submit_words(Exchange& exchange, Store& store, BlobStore& blobs, const renderer::Limits& limits)
 {
     const BodyKind kind = kind_of(exchange.header(kBodyType));
     SubmitWords head;
