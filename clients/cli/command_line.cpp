@@ -98,8 +98,14 @@ void add_render(CommandLine& words)
             ->envname("HELIOGRAPH_SAMPLES")
             ->check(CLI::Range(1u, 1u << 31));
     command
-        ->add_option(
-            "--time", options.time_s, "the best picture in this many seconds, instead of the scene's quality")
+        ->add_option_function<double>(
+            "--time",
+            [&options, samples](double seconds) {
+                options.time_s = seconds;
+                samples->envname(""); // a flag wins over the environment, also over that of its rival
+            },
+            "the best picture in this many seconds, instead of the scene's quality")
+        ->trigger_on_parse() // before the environment is read
         ->excludes(samples);
     command->add_option("--seed", options.seed, "seed of the random numbers, 0 to 2^53-1");
     command->add_option("--width", options.width_px, "pixels");

@@ -40,6 +40,20 @@ void write_all(std::FILE* file, std::string_view bytes, const std::filesystem::p
         fail("cannot write", path, errno);
 }
 
+// A device or a pipe cannot be replaced, only written to; nor may the name of a descriptor be, which
+// /dev/stdout is, whatever it stands for.
+bool is_written_in_place(const std::filesystem::path& path)
+{
+    std::error_code error;
+    std::filesystem::path name = path;
+    for (int links = 0; links < 40 && std::filesystem::is_symlink(name, error); ++links) {
+        const auto folder = std::filesystem::canonical(std::filesystem::absolute(name).parent_path(), error);
+        if (folder.string().starts_with("/proc/")) return true;
+        name = name.parent_path() / std::filesystem::read_symlink(name, error);
+    }
+    return std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error);
+}
+
 } // namespace
 
 std::string read_file(const std::filesystem::path& path)
@@ -64,8 +78,7 @@ void write_file(const std::filesystem::path& path, std::string_view bytes)
 {
     if (path == "-") return write_all(stdout, bytes, "standard output");
     std::error_code error;
-    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-        // A device or a pipe cannot be replaced, only written to.
+    if (is_written_in_place(path)) {
         const OpenedFile file(std::fopen(path.c_str(), "wb"));
         if (!file) fail("cannot write", path, errno);
         return write_all(file.get(), bytes, path);
@@ -93,6 +106,10 @@ void check_writable(const std::filesystem::path& path)
 {
     if (path == "-") return;
     if (std::filesystem::is_directory(path)) fail("cannot write", path, EISDIR);
+    if (is_written_in_place(path)) {
+        if (::access(path.c_str(), W_OK) != 0) fail("cannot write", path, errno);
+        return;
+    }
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (::access(folder.c_str(), W_OK | X_OK) != 0) fail("cannot write to the folder", folder, errno);
 }

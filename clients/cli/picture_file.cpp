@@ -2,6 +2,7 @@
 
 #include "clients/cli/files.h"
 #include "clients/cli/user_error.h"
+#include "renderer/color/srgb.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -30,13 +31,6 @@ constexpr std::uint32_t kLongestSidePx = 32768;
     throw UserError(ExitCode::usage, name + ": " + why);
 }
 
-// IEC 61966-2-1.
-float linear_from_srgb(double encoded)
-{
-    return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92
-                                                 : std::pow((encoded + 0.055) / 1.055, 2.4));
-}
-
 struct FreePixels {
     void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
@@ -58,7 +52,8 @@ std::vector<float> srgb_table(std::size_t steps)
 {
     std::vector<float> table(steps);
     for (std::size_t i = 0; i < steps; ++i)
-        table[i] = linear_from_srgb(static_cast<double>(i) / static_cast<double>(steps - 1));
+        table[i] = renderer::linear_from_srgb(
+            static_cast<float>(static_cast<double>(i) / static_cast<double>(steps - 1)));
     return table;
 }
 

@@ -57,7 +57,7 @@ ExitCode status_command(const ServiceOptions& service, const StatusOptions& opti
 struct ListOptions {
     std::string state, label;
     std::uint32_t limit = 0; // 0: every page
-    bool json = false;       // one job object a line
+    bool json = false;       // the pages as the service sends them
 };
 ExitCode list_command(const ServiceOptions& service, const ListOptions& options, std::stop_token stop);
 

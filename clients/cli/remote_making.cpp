@@ -1,6 +1,7 @@
 #include "clients/cli/files.h"
 #include "clients/cli/remote_commands.h"
 #include "clients/cli/remote_job.h"
+#include "clients/cli/service_errors.h"
 #include "clients/cli/user_error.h"
 
 #include <cstdio>
@@ -36,7 +37,8 @@ void cancel_quietly(const ServiceOptions& service, const std::string& id)
 {
     try {
         HttpClient client(parse_service_url(service.url), 0, {});
-        client.send({.method = "POST", .path = path_of_job(id) + "/cancel"});
+        const HttpAnswer answer = client.send({.method = "POST", .path = path_of_job(id) + "/cancel"});
+        if (answer.status != 200 && answer.status != 202) throw error_from("the service refused", answer);
         std::fprintf(stderr, "heliograph: %s was cancelled\n", id.c_str());
     } catch (const UserError& error) {
         std::fprintf(stderr, "heliograph: %s could not be cancelled: %s\n", id.c_str(), error.what());

@@ -5,7 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <filesystem>
 #include <iterator>
+#include <string>
+#include <unistd.h>
 
 namespace {
 
@@ -24,6 +28,39 @@ TEST(Files, WriteWholeOnesAndLeaveNothingElse)
     EXPECT_THROW(clients::read_file(folder.path()), clients::UserError) << "a folder";
     EXPECT_THROW(clients::check_writable(folder.file("absent/a")), clients::UserError);
     EXPECT_THROW(clients::check_writable(folder.path()), clients::UserError);
+}
+
+// In a process of its own, where need be as a user who may write to no system folder.
+[[noreturn]] void check_as_ordinary_user(const char* path)
+{
+    if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(3);
+    try {
+        clients::check_writable(path);
+    } catch (const clients::UserError&) {
+        _exit(1);
+    }
+    _exit(0);
+}
+
+TEST(FilesDeathTest, TakeADeviceThatMayBeWrittenInAFolderThatMayNot)
+{
+    EXPECT_EXIT(check_as_ordinary_user("/dev/null"), testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(check_as_ordinary_user("/dev/mem"), testing::ExitedWithCode(1), "");
+    EXPECT_EXIT(check_as_ordinary_user("/dev/new"), testing::ExitedWithCode(1), "");
+}
+
+TEST(Files, AreWrittenThroughADescriptorsNameAndDoNotReplaceIt)
+{
+    const TempFolder folder;
+    const std::string target = folder.file("target");
+    const int fd = open(target.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    const std::filesystem::path name = "/proc/self/fd/" + std::to_string(fd);
+    std::filesystem::create_symlink(name, folder.path() / "stdout"); // as /dev/stdout is one
+    clients::check_writable(folder.path() / "stdout");
+    clients::write_file(folder.path() / "stdout", "text");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "stdout"));
+    EXPECT_EQ(tests::bytes_of(target), "text");
+    close(fd);
 }
 
 TEST(FolderFiles, OpenOnlyWhatLiesWithinTheFolder)

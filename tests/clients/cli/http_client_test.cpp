@@ -1,11 +1,10 @@
 #include "clients/cli/http_client.h"
 #include "clients/cli/user_error.h"
+#include "tests/clients/cli/small_service.h"
 
 #include <gtest/gtest.h>
-#include <httplib.h>
 
 #include <atomic>
-#include <functional>
 #include <thread>
 
 namespace {
@@ -13,30 +12,7 @@ namespace {
 using clients::HttpAnswer;
 using clients::HttpClient;
 using clients::UserError;
-
-// A service of one answer, on any free port.
-class SmallService {
-public:
-    explicit SmallService(httplib::Server::Handler handler)
-    {
-        server_.Get(".*", handler);
-        server_.Post(".*", handler);
-        port_ = server_.bind_to_any_port("127.0.0.1");
-        thread_ = std::jthread([this] { server_.listen_after_bind(); });
-        while (!server_.is_running())
-            std::this_thread::yield(); // stop() before that would be lost
-    }
-    ~SmallService() { server_.stop(); }
-    clients::ServiceUrl url(const std::string& prefix = "") const
-    {
-        return {"http://127.0.0.1:" + std::to_string(port_), prefix};
-    }
-
-private:
-    httplib::Server server_;
-    int port_ = 0;
-    std::jthread thread_;
-};
+using tests::SmallService;
 
 TEST(HttpClient, SendsWhatItIsGivenAndReadsTheAnswer)
 {

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -17,11 +18,13 @@ using tests::TempFolder;
 
 const std::string kAssets = HELIOGRAPH_ASSET_DIR;
 
-ProgramRun heliograph(std::vector<std::string> words, const std::string& input = {})
+ProgramRun heliograph(std::vector<std::string> words,
+                      const std::string& input = {},
+                      std::vector<std::string> environment = {})
 {
     words.insert(words.begin(), HELIOGRAPH_BIN_DIR "/heliograph");
-    return tests::run_program(
-        words, input, {"HELIOGRAPH_URL=http://127.0.0.1:9"}); // the discard port: nobody answers
+    environment.emplace_back("HELIOGRAPH_URL=http://127.0.0.1:9"); // the discard port: nobody answers
+    return tests::run_program(words, input, environment);
 }
 
 // Knot, shape, light and material; small enough to render many times.
@@ -53,6 +56,28 @@ TEST(Heliograph, TellsItsVersionAndItsExitCodes)
     EXPECT_THAT(help.out, HasSubstr("Exit status:"));
     EXPECT_THAT(help.out, HasSubstr("130"));
     EXPECT_THAT(heliograph({"submit", "--help"}).out, HasSubstr("HELIOGRAPH_URL"));
+}
+
+TEST(Heliograph, LetsTimeAsAFlagWinOverSamplesOfTheEnvironment)
+{
+    const TempFolder folder;
+    const std::string scene = folder.write(
+        "scene.json", R"({"scene":{"objects":[{"shape":"sphere"}]},"image":{"width":8,"height":8}})");
+    const std::string report = folder.file("report.json");
+    const std::vector<std::string> words{
+        "render", scene, "-q", "-o", folder.file("out.png"), "--report", report};
+    const auto with = [&words](const std::vector<std::string>& more) {
+        std::vector<std::string> all = words;
+        all.insert(all.end(), more.begin(), more.end());
+        return heliograph(all, {}, {"HELIOGRAPH_SAMPLES=3"});
+    };
+    EXPECT_EQ(with({}).exit_code, 0);
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(report)).at("accuracy").at("samples"), 3);
+    const ProgramRun timed = with({"--time", "0.05"});
+    EXPECT_EQ(timed.exit_code, 0) << timed.err;
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(report)).at("accuracy").at("requested").at("time_s"), 0.05);
+    EXPECT_EQ(with({"--samples", "2", "--time", "1"}).exit_code, 2) << "two flags";
+    EXPECT_EQ(with({"--time", "1", "--samples", "2"}).exit_code, 2) << "two flags";
 }
 
 TEST(Heliograph, RefusesWrongUseWith2)
