@@ -8,6 +8,11 @@ namespace renderer {
 
 namespace {
 
+constexpr std::uint64_t kMostBytes = 1ull << 50;
+constexpr std::uint64_t kDay_s = 24 * 3600;
+constexpr std::uint64_t kMostThreads = 4096; // each waiter holds one
+constexpr std::uint64_t kDeepestJson = 512;  // what walks a tree of JSON calls itself for every floor
+
 std::uint64_t physical_memory_bytes()
 {
     const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
@@ -20,32 +25,50 @@ std::uint64_t physical_memory_bytes()
 std::span<const LimitEntry> limit_table()
 {
     static constexpr std::array table{
-        LimitEntry{"json_bytes", &Limits::json_bytes, "bytes", "largest JSON body"},
-        LimitEntry{"json_depth", &Limits::json_depth, "", "deepest nesting of JSON"},
-        LimitEntry{"json_values", &Limits::json_values, "", "values in a JSON body"},
-        LimitEntry{"asset_bytes", &Limits::asset_bytes, "bytes", "largest asset"},
-        LimitEntry{"total_asset_bytes", &Limits::total_asset_bytes, "bytes", "all assets together"},
-        LimitEntry{"image_side_px", &Limits::image_side_px, "pixels", "longest side of a picture"},
-        LimitEntry{"image_pixels", &Limits::image_pixels, "pixels", "largest picture"},
-        LimitEntry{"samples", &Limits::samples, "", "samples a pixel"},
-        LimitEntry{"triangles", &Limits::triangles, "", "triangles in a scene, each mesh counted once"},
-        LimitEntry{"objects", &Limits::objects, "", "objects in a scene"},
+        LimitEntry{"json_bytes", &Limits::json_bytes, "bytes", "largest JSON body", 1ull << 30},
+        LimitEntry{"json_depth", &Limits::json_depth, "", "deepest nesting of JSON", kDeepestJson},
+        LimitEntry{"json_values", &Limits::json_values, "", "values in a JSON body", 1ull << 28},
+        LimitEntry{"asset_bytes", &Limits::asset_bytes, "bytes", "largest asset", kMostBytes},
+        LimitEntry{
+            "total_asset_bytes", &Limits::total_asset_bytes, "bytes", "all assets together", kMostBytes},
+        LimitEntry{
+            "image_side_px", &Limits::image_side_px, "pixels", "longest side of a picture", 1ull << 20},
+        LimitEntry{"image_pixels", &Limits::image_pixels, "pixels", "largest picture", 1ull << 32},
+        LimitEntry{"samples", &Limits::samples, "", "samples a pixel", 1ull << 31},
+        LimitEntry{"triangles",
+                   &Limits::triangles,
+                   "",
+                   "triangles in a scene, each mesh counted once",
+                   (1ull << 32) - 2},
+        LimitEntry{"objects", &Limits::objects, "", "objects in a scene", 1ull << 31},
         LimitEntry{"render_memory_bytes",
                    &Limits::render_memory_bytes,
                    "bytes",
-                   "film, meshes and BVHs of one render"},
-        LimitEntry{"queue_jobs", &Limits::queue_jobs, "", "jobs that wait"},
-        LimitEntry{"wait_s", &Limits::wait_s, "s", "longest Prefer: wait"},
-        LimitEntry{"waiters", &Limits::waiters, "", "requests that wait at the same time"},
-        LimitEntry{"streams", &Limits::streams, "", "event streams at the same time"},
-        LimitEntry{"header_s", &Limits::header_s, "s", "time to send a request's header"},
-        LimitEntry{"idle_body_s", &Limits::idle_body_s, "s", "silence within a request's body"},
-        LimitEntry{"retention_s", &Limits::retention_s, "s", "how long results are kept"},
-        LimitEntry{
-            "import_memory_bytes", &Limits::import_memory_bytes, "bytes", "address space of one import"},
-        LimitEntry{"import_s", &Limits::import_s, "s", "time of one import"},
-        LimitEntry{"import_output_bytes", &Limits::import_output_bytes, "bytes", "imported form of one mesh"},
-        LimitEntry{"mesh_cache_bytes", &Limits::mesh_cache_bytes, "bytes", "prepared meshes kept in memory"},
+                   "film, meshes and BVHs of one render",
+                   kMostBytes},
+        LimitEntry{"queue_jobs", &Limits::queue_jobs, "", "jobs that wait", 1ull << 31},
+        LimitEntry{"wait_s", &Limits::wait_s, "s", "longest Prefer: wait", kDay_s},
+        LimitEntry{"waiters", &Limits::waiters, "", "requests that wait at the same time", kMostThreads},
+        LimitEntry{"streams", &Limits::streams, "", "event streams at the same time", kMostThreads},
+        LimitEntry{"header_s", &Limits::header_s, "s", "time to send a request's header", kDay_s},
+        LimitEntry{"idle_body_s", &Limits::idle_body_s, "s", "silence within a request's body", kDay_s},
+        LimitEntry{"retention_s", &Limits::retention_s, "s", "how long results are kept", 100 * 365 * kDay_s},
+        LimitEntry{"import_memory_bytes",
+                   &Limits::import_memory_bytes,
+                   "bytes",
+                   "address space of one import",
+                   kMostBytes},
+        LimitEntry{"import_s", &Limits::import_s, "s", "time of one import", 365 * kDay_s},
+        LimitEntry{"import_output_bytes",
+                   &Limits::import_output_bytes,
+                   "bytes",
+                   "imported form of one mesh",
+                   kMostBytes},
+        LimitEntry{"mesh_cache_bytes",
+                   &Limits::mesh_cache_bytes,
+                   "bytes",
+                   "prepared meshes kept in memory",
+                   kMostBytes},
     };
     return table;
 }

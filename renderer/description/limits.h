@@ -38,8 +38,9 @@ struct Limits {
 struct LimitEntry {
     const char* name; // as in /v1/capabilities; the flag is --limit-<name with dashes>
     std::uint64_t Limits::*value;
-    const char* unit; // "bytes", "s", "pixels", "" (a count)
-    const char* what; // one line for help and docs
+    const char* unit;   // "bytes", "s", "pixels", "" (a count)
+    const char* what;   // one line for help and docs
+    std::uint64_t most; // that may be set: sums of threads, times in clocks and sizes in memory stay in range
 };
 
 std::span<const LimitEntry> limit_table();

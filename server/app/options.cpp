@@ -9,7 +9,6 @@
 #include <charconv>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -150,13 +149,13 @@ std::vector<Row> option_rows(Draft& draft)
                "the program that reads meshes",
                take_text([&o](const std::string& text) { o.import_program = text; }))};
     for (const renderer::LimitEntry& limit : renderer::limit_table())
-        rows.push_back({api::flag_of(limit.name),
-                        api::environment_of(limit.name),
-                        "N",
-                        std::to_string(o.limits.*limit.value),
-                        help_of(limit),
-                        take_number(std::numeric_limits<std::uint64_t>::max(),
-                                    [&o, member = limit.value](std::uint64_t n) { o.limits.*member = n; })});
+        rows.push_back(
+            {api::flag_of(limit.name),
+             api::environment_of(limit.name),
+             "N",
+             std::to_string(o.limits.*limit.value),
+             help_of(limit),
+             take_number(limit.most, [&o, member = limit.value](std::uint64_t n) { o.limits.*member = n; })});
     return rows;
 }
 

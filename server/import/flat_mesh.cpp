@@ -1,5 +1,6 @@
 #include "server/import/flat_mesh.h"
 
+#include "api/words/limit_words.h"
 #include "renderer/geometry/validate_mesh.h"
 
 #include <array>
@@ -181,7 +182,7 @@ ImportOutcome read_mesh(Head head, std::span<const std::byte> bytes, const rende
     if (head.triangles > limits.triangles)
         return ImportFailure{"over_limit",
                              std::to_string(head.triangles) + " triangles, the limit is " +
-                                 std::to_string(limits.triangles) + " (--limit-triangles)"};
+                                 std::to_string(limits.triangles) + " (" + api::flag_of("triangles") + ")"};
     ImportedAsset asset;
     std::size_t at = sizeof(Head);
     for_each_array(head, asset.mesh, [&](std::uint64_t count, auto& array) {
@@ -220,10 +221,11 @@ ImportOutcome within_flat_bounds(ImportOutcome outcome, const renderer::Limits& 
             bytes += array.size() * sizeof(*array.data());
         });
     if (bytes > limits.import_output_bytes)
-        return ImportFailure{
-            "over_limit",
-            "the mesh takes " + std::to_string(bytes) + " bytes when imported, the limit is " +
-                std::to_string(limits.import_output_bytes) + " (--limit-import-output-bytes)"};
+        return ImportFailure{"over_limit",
+                             "the mesh takes " + std::to_string(bytes) +
+                                 " bytes when imported, the limit is " +
+                                 std::to_string(limits.import_output_bytes) + " (" +
+                                 api::flag_of("import_output_bytes") + ")"};
     if (text_bytes > kMostTextBytes)
         return ImportFailure{"over_limit",
                              "names of parts, materials and textures take " + std::to_string(text_bytes) +

@@ -1,5 +1,6 @@
 #include "server/import/run_import.h"
 
+#include "api/words/limit_words.h"
 #include "server/import/child_process.h"
 #include "server/import/file_desk.h"
 
@@ -150,8 +151,8 @@ private:
     {
         result_.repeatable = false;
         return {"import_timeout",
-                "the import took longer than " + std::to_string(run_.limits.import_s) +
-                    " s (--limit-import-s); simplify or split the mesh"};
+                "the import took longer than " + std::to_string(run_.limits.import_s) + " s (" +
+                    api::flag_of("import_s") + "); simplify or split the mesh"};
     }
 
     ImportFailure out_of_memory()
@@ -159,7 +160,8 @@ private:
         result_.repeatable = false;
         return {"import_out_of_memory",
                 "the import needs more than " + std::to_string(run_.limits.import_memory_bytes) +
-                    " bytes of memory (--limit-import-memory-bytes); simplify or split the mesh"};
+                    " bytes of memory (" + api::flag_of("import_memory_bytes") +
+                    "); simplify or split the mesh"};
     }
 
     ImportOutcome outcome_of(const ChildProcess::End& end)
@@ -170,8 +172,8 @@ private:
         if (end.signal == SIGXFSZ)
             return ImportFailure{"over_limit",
                                  "the imported form takes more than " +
-                                     std::to_string(run_.limits.import_output_bytes) +
-                                     " bytes (--limit-import-output-bytes)"};
+                                     std::to_string(run_.limits.import_output_bytes) + " bytes (" +
+                                     api::flag_of("import_output_bytes") + ")"};
         if (end.signal)
             return ImportFailure{"import_crashed",
                                  "the importer crashed on this file (signal " + std::to_string(end.signal) +

@@ -82,6 +82,20 @@ TEST(Options, TakeEveryLimitAsAFlagAndAVariable)
     }
 }
 
+TEST(Options, RefuseLimitsThatNothingCouldKeep)
+{
+    for (const renderer::LimitEntry& limit : renderer::limit_table()) {
+        const std::string flag = api::flag_of(limit.name);
+        const std::string most = std::to_string(limit.most), more = std::to_string(limit.most + 1);
+        EXPECT_EQ(accepted({flag.c_str(), most.c_str()}).limits.*limit.value, limit.most) << flag;
+        const std::string text = refused({flag.c_str(), more.c_str()});
+        EXPECT_NE(text.find(flag), std::string::npos) << text;
+        EXPECT_NE(text.find(most), std::string::npos) << text;
+        EXPECT_NE(refused({flag.c_str(), "18446744073709551615"}), "") << flag;
+        EXPECT_LE(renderer::Limits{}.*limit.value, limit.most) << flag;
+    }
+}
+
 TEST(Options, AreReadFromTheEnvironment)
 {
     const Variable port("HELIOGRAPH_PORT", "0"), host("HELIOGRAPH_HOST", "0.0.0.0"),

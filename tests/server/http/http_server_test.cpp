@@ -133,6 +133,20 @@ TEST(HttpServer, GoesOnAfterEveryKindOfNonsense)
     }
 }
 
+TEST(HttpServer, ServesUnderTheLargestLimitsThereMayBe)
+{
+    renderer::Limits limits;
+    for (const renderer::LimitEntry& limit : renderer::limit_table())
+        limits.*limit.value = limit.most;
+    const LiveService service(limits);
+    EXPECT_TRUE(service.alive());
+    const std::size_t depth = limits.json_depth - 1;
+    const std::string deep = std::string(depth, '[') + std::string(depth, ']');
+    EXPECT_EQ(service.submit("{\"scene\":" + deep + "}").status, 422);
+    EXPECT_EQ(service.submit("{\"scene\":[" + deep + "]}").status, 400);
+    EXPECT_EQ(service.submit(quick_job(), {{"Prefer", "wait=60"}}).status, 200);
+}
+
 TEST(HttpServer, RefusesMoreWaitersThanItHasPlacesFor)
 {
     renderer::Limits limits;
