@@ -1,8 +1,11 @@
 #include "renderer/accel/mesh_bvh.h"
 
+#include "renderer/accel/exact_test.h"
+#include "renderer/accel/ray_run.h"
 #include "renderer/math/floating_point_mode.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace renderer {
 
@@ -69,62 +72,32 @@ MeshBvh::build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& po
     return built;
 }
 
-// The double test of one triangle, drawn in to the best hit so far. True where it became the best.
-bool MeshBvh::test(const KernelRay& ray,
-                   const TriangleBlock& block,
-                   unsigned lane,
-                   std::optional<MeshHit>& best)
+std::optional<MeshHit> MeshBvh::closest_hit(const Ray& ray, const MeshKernels& kernels) const
 {
-    const std::uint32_t primitive = block.primitive[lane];
-    if (primitive == TriangleBlock::kNone) return false;
-    const auto hit = intersect_watertight(
-        ray.exact, ray.t_min, ray.t_max, block.corner(0, lane), block.corner(1, lane), block.corner(2, lane));
-    if (!hit) return false;
-    if (best && (hit->t > best->t || (hit->t == best->t && primitive > best->primitive))) return false;
-    best = {hit->t, primitive, hit->barycentrics};
-    return true;
+    MeshHit hit;
+    if (!kernels.closest_hit(view(), ray, hit)) return std::nullopt;
+    return hit;
 }
 
-template <bool kAnyHit>
-std::optional<MeshHit> MeshBvh::trace(const Ray& ray) const
+bool MeshBvh::any_hit(const Ray& ray, const MeshKernels& kernels) const
 {
-    std::optional<MeshHit> best;
-    KernelRay kernel;
-    if (leaves_.empty() || !kernel.prepare(ray, bvh_.bounds, scale_)) return best;
-    const auto leaf = [&](std::uint32_t first, std::uint32_t blocks, float& end) {
-        for (std::uint32_t i = first; i < first + blocks; ++i)
-            for (unsigned lanes = kernel.may_hit(leaves_[i], end); lanes != 0; lanes &= lanes - 1) {
-                if (!test(kernel, leaves_[i], static_cast<unsigned>(__builtin_ctz(lanes)), best)) continue;
-                if (kAnyHit) return true;
-                end = std::min(end, kernel.end_for(best->t));
-            }
-        return false;
-    };
-    traverse(bvh_, kernel.slabs, kernel.begin(), kernel.end_for(kernel.t_max), leaf);
-    if (best) best->t *= kernel.ray_units;
-    return best;
-}
-
-std::optional<MeshHit> MeshBvh::closest_hit(const Ray& ray) const
-{
-    return trace<false>(ray);
-}
-
-bool MeshBvh::any_hit(const Ray& ray) const
-{
-    return trace<true>(ray).has_value();
+    return kernels.any_hit(view(), ray);
 }
 
 // Every triangle, by the double test alone.
 std::optional<MeshHit> MeshBvh::closest_hit_brute_force(const Ray& ray) const
 {
-    std::optional<MeshHit> best;
-    KernelRay kernel;
-    if (!kernel.prepare_exact(ray, scale_)) return best;
+    if (!is_traceable(ray)) return std::nullopt;
+    const double size = max_component(abs(ray.direction)), scale = static_cast<double>(scale_);
+    const double direction_scale = std::exp2(-std::floor(std::log2(size)));
+    const WatertightRay<double> exact(ray.origin * scale, ray.direction * direction_scale);
+    const double units = scale / direction_scale;
+    MeshHit best{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
     for (const TriangleBlock& block : leaves_)
         for (unsigned lane = 0; lane < TriangleBlock::kLanes; ++lane)
-            test(kernel, block, lane, best);
-    if (best) best->t *= kernel.ray_units;
+            improve_hit(exact, ray.t_min * units, ray.t_max * units, block, lane, best);
+    if (best.primitive == TriangleBlock::kNone) return std::nullopt;
+    best.t *= direction_scale / scale;
     return best;
 }
 

@@ -10,13 +10,13 @@
 // Threads    immutable after build; rays may be traced from any number of threads.
 #pragma once
 
-#include "renderer/accel/kernel_ray.h"
+#include "renderer/accel/mesh_hit.h"
+#include "renderer/accel/mesh_kernels.h"
 #include "renderer/accel/triangle_block.h"
 #include "renderer/accel/wide_bvh.h"
 #include "renderer/description/settings.h"
 #include "renderer/geometry/mesh.h"
 #include "renderer/geometry/ray.h"
-#include "renderer/geometry/surface_point.h"
 
 #include <cstdint>
 #include <optional>
@@ -26,22 +26,9 @@
 
 namespace renderer {
 
-struct MeshHit {
-    double t;
-    std::uint32_t primitive; // triangle, counted over the whole mesh also where a run was prepared
-    Vec3d barycentrics;      // weights of its three corners
-};
-
 struct TriangleRun {
     std::uint32_t first = 0, count = 0;
 };
-
-// Position, error bound and normal of a hit, in object space.
-inline SurfacePoint surface_point(const Mesh& mesh, const MeshHit& hit)
-{
-    const Triangle& v = mesh.triangles[hit.primitive];
-    return triangle_point(mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], hit.barycentrics);
-}
 
 class MeshBvh {
 public:
@@ -50,8 +37,19 @@ public:
     static std::optional<MeshBvh>
     build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& pool, std::stop_token stop = {});
 
-    std::optional<MeshHit> closest_hit(const Ray& ray) const;
-    bool any_hit(const Ray& ray) const;
+    std::optional<MeshHit> closest_hit(const Ray& ray, const MeshKernels& kernels = mesh_kernels()) const;
+    bool any_hit(const Ray& ray, const MeshKernels& kernels = mesh_kernels()) const;
+    // The same for MeshKernels::kMostRays rays at most; see there.
+    std::uint32_t closest_hits(std::span<const Ray> rays,
+                               std::span<MeshHit> hits,
+                               const MeshKernels& kernels = mesh_kernels()) const
+    {
+        return kernels.closest_hits(view(), rays.data(), static_cast<unsigned>(rays.size()), hits.data());
+    }
+    std::uint32_t any_hits(std::span<const Ray> rays, const MeshKernels& kernels = mesh_kernels()) const
+    {
+        return kernels.any_hits(view(), rays.data(), static_cast<unsigned>(rays.size()));
+    }
     // The same answers from every triangle in turn: for tests and for measuring.
     std::optional<MeshHit> closest_hit_brute_force(const Ray& ray) const;
     bool any_hit_brute_force(const Ray& ray) const;
@@ -63,12 +61,12 @@ public:
     unsigned depth() const { return bvh_.depth; }
 
 private:
-    static bool
-    test(const KernelRay& ray, const TriangleBlock& block, unsigned lane, std::optional<MeshHit>& best);
-    template <bool kAnyHit>
-    std::optional<MeshHit> trace(const Ray& ray) const;
+    MeshView view() const
+    {
+        return {bvh_.nodes.empty() ? nullptr : bvh_.nodes.data(), leaves_.data(), bvh_.bounds, scale_};
+    }
 
-    WideBvh bvh_; // in scaled coordinates
+    WideBvh bvh_;                       // in scaled coordinates
     std::vector<TriangleBlock> leaves_; // with copies of the corners, so that a test reads one place
     Bounds3f bounds_;
     float scale_ = 1; // power of two that brings coordinates near 1 where they are far from it

@@ -23,7 +23,7 @@ Children children_of(const Bvh<float>& bvh, const BvhNode<float>& node)
     }
     for (const BvhNode<float>& child : bvh.pairs[node.first].child)
         open.node[open.count++] = child;
-    while (open.count < 4) {
+    while (open.count < WideNode::kChildren) {
         unsigned largest = open.count;
         double area = -1;
         for (unsigned i = 0; i < open.count; ++i)

@@ -1,13 +1,9 @@
-// WideBvh: a tree of boxes, four children a node, tested at once; made from a binary Bvh<float>.
+// WideBvh: a tree of boxes, eight children a node, tested at once; made from a binary Bvh<float>.
 //
-// Layout  128 bytes a node: two cache lines. A child is an inner node, or a leaf: a run of the caller's
-//         blocks.
-// Cost    traversal is iterative, a fixed stack, no allocation.
+// Layout  224 bytes a node. A child is an inner node, or a leaf: a run of at most two of the caller's blocks.
 #pragma once
 
 #include "renderer/accel/bvh.h"
-#include "renderer/accel/float4.h"
-#include "renderer/geometry/box.h"
 
 #include <cstdint>
 #include <span>
@@ -15,10 +11,21 @@
 
 namespace renderer {
 
-struct alignas(64) WideNode {
-    float planes[6][4];     // lower x, upper x, lower y, upper y, lower z, upper z, of four children
-    std::uint32_t child[4]; // leaf: its first block; inner: its node
-    std::uint32_t count[4]; // blocks of a leaf; 0: inner. Children that are not there have empty boxes
+struct alignas(32) WideNode {
+    static constexpr unsigned kChildren = 8;
+
+    float planes[6][kChildren];     // lower x, upper x, lower y, upper y, lower z, upper z
+    std::uint32_t child[kChildren]; // see ChildCode. Children that are not there have empty boxes
+};
+
+// A child in 32 bits: an inner node's number, or a leaf's first block and whether it has a second one.
+struct ChildCode {
+    static constexpr std::uint32_t kLeaf = 1u << 31, kTwoBlocks = 1u << 30, kNumber = kTwoBlocks - 1;
+
+    static std::uint32_t leaf(std::uint32_t first_block, std::uint32_t blocks)
+    {
+        return kLeaf | (blocks == 2 ? kTwoBlocks : 0) | first_block;
+    }
 };
 
 struct WideBvh {
@@ -28,7 +35,7 @@ struct WideBvh {
 };
 
 // `leaf_blocks(first, count)` is called once for every leaf, in the order of the tree, with its run of
-// bvh.order; it returns the leaf's first block and number of blocks, at least one.
+// bvh.order; it returns the leaf's first block and number of blocks, one or two.
 struct BlockRun {
     std::uint32_t first, count;
 };
@@ -37,10 +44,10 @@ WideBvh widen(const Bvh<float>& bvh, LeafBlocks&& leaf_blocks);
 
 namespace wide {
 
-// Up to four nodes of the binary tree that become the children of one: the largest inner ones are opened
+// Up to eight nodes of the binary tree that become the children of one: the largest inner ones are opened
 // first.
 struct Children {
-    BvhNode<float> node[4];
+    BvhNode<float> node[WideNode::kChildren];
     unsigned count = 0;
 };
 Children children_of(const Bvh<float>& bvh, const BvhNode<float>& node);
@@ -62,14 +69,12 @@ void widen_into(WideBvh& wide,
         set_box(wide.nodes[at], i, child);
         if (child.count != 0) {
             const BlockRun run = leaf_blocks(child.first, child.count);
-            wide.nodes[at].child[i] = run.first;
-            wide.nodes[at].count[i] = run.count;
+            wide.nodes[at].child[i] = ChildCode::leaf(run.first, run.count);
             continue;
         }
         const auto next = static_cast<std::uint32_t>(wide.nodes.size());
         wide.nodes.push_back(empty_node());
         wide.nodes[at].child[i] = next;
-        wide.nodes[at].count[i] = 0;
         widen_into(wide, next, bvh, child, depth + 1, leaf_blocks);
     }
 }
@@ -82,83 +87,11 @@ WideBvh widen(const Bvh<float>& bvh, LeafBlocks&& leaf_blocks)
     WideBvh result;
     if (bvh.empty()) return result;
     result.bounds = {bvh.root.lower, bvh.root.upper};
-    result.nodes.reserve(bvh.pairs.size() / 2 + 1);
+    result.nodes.reserve(bvh.pairs.size() / 4 + 1);
     result.nodes.push_back(wide::empty_node());
     wide::widen_into(result, 0, bvh, bvh.root, 1, leaf_blocks);
     result.nodes.shrink_to_fit();
     return result;
-}
-
-// Calls leaf(first_block, blocks, end) for leaves that the ray may touch, nearest boxes first; it may draw
-// `end` in as hits are found, and returns true to end the walk. A box entered after `end` is passed over; one
-// entered exactly there is not, so that ties are seen.
-template <typename Leaf>
-void traverse(const WideBvh& bvh, const SlabRay<float>& ray, float begin, float end, Leaf&& leaf)
-{
-    struct Waiting {
-        std::uint32_t child, count;
-        float entry;
-    };
-    // Each level leaves at most three behind.
-    Waiting stack[3 * kMaxBvhDepth + 1];
-    unsigned waiting = 0;
-    const std::size_t near_x = ray.negative_x ? 1 : 0, near_y = ray.negative_y ? 3 : 2,
-                      near_z = ray.negative_z ? 5 : 4;
-    const std::size_t far_x = near_x ^ 1, far_y = near_y ^ 1, far_z = near_z ^ 1;
-    const auto splat = [](Vec3f v, std::size_t axis) { return Float4::splat(v[axis]); };
-    const Float4 no_x = splat(ray.near_origin, 0), no_y = splat(ray.near_origin, 1),
-                 no_z = splat(ray.near_origin, 2);
-    const Float4 fo_x = splat(ray.far_origin, 0), fo_y = splat(ray.far_origin, 1),
-                 fo_z = splat(ray.far_origin, 2);
-    const Float4 ni_x = splat(ray.near_inverse, 0), ni_y = splat(ray.near_inverse, 1),
-                 ni_z = splat(ray.near_inverse, 2);
-    const Float4 fi_x = splat(ray.far_inverse, 0), fi_y = splat(ray.far_inverse, 1),
-                 fi_z = splat(ray.far_inverse, 2);
-    const Float4 begins = Float4::splat(begin);
-
-    Waiting next{0, 0, begin};
-    if (bvh.nodes.empty()) return;
-    for (;;) {
-        if (next.count != 0) {
-            if (leaf(next.child, next.count, end)) return;
-        } else {
-            const WideNode& node = bvh.nodes[next.child];
-            const auto plane = [&](std::size_t row) { return Float4::load(node.planes[row]); };
-            // A NaN (0 * infinity) comes first, so it is dropped: that slab does not restrict.
-            const Float4 entry =
-                max((plane(near_x) - no_x) * ni_x,
-                    max((plane(near_y) - no_y) * ni_y, max((plane(near_z) - no_z) * ni_z, begins)));
-            const Float4 exit =
-                min((plane(far_x) - fo_x) * fi_x,
-                    min((plane(far_y) - fo_y) * fi_y, min((plane(far_z) - fo_z) * fi_z, Float4::splat(end))));
-            unsigned hits = less_equal(entry, exit);
-            if (hits != 0) {
-                alignas(16) float entries[4];
-                entry.store(entries);
-                const auto take = [&] {
-                    const auto i = static_cast<unsigned>(__builtin_ctz(hits));
-                    hits &= hits - 1;
-                    return Waiting{node.child[i], node.count[i], entries[i]};
-                };
-                next = take();
-                // The nearest is taken at once, the others wait, the nearer above the farther.
-                const unsigned base = waiting;
-                while (hits != 0) {
-                    Waiting other = take();
-                    if (other.entry < next.entry) std::swap(other, next);
-                    unsigned at = waiting++;
-                    for (; at > base && stack[at - 1].entry < other.entry; --at)
-                        stack[at] = stack[at - 1];
-                    stack[at] = other;
-                }
-                continue;
-            }
-        }
-        do {
-            if (waiting == 0) return;
-            next = stack[--waiting];
-        } while (next.entry > end);
-    }
 }
 
 } // namespace renderer

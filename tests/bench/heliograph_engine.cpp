@@ -2,6 +2,8 @@
 #include "renderer/parallel/thread_pool.h"
 #include "tests/bench/ray_engine.h"
 
+#include <algorithm>
+#include <bit>
 #include <optional>
 
 namespace bench {
@@ -32,9 +34,17 @@ public:
     std::uint64_t trace(const RaySet& set, std::span<const FloatRay> rays) const override
     {
         std::uint64_t hits = 0;
-        for (const FloatRay& r : rays) {
-            const Ray ray{to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
-            hits += set.occlusion ? bvh_->any_hit(ray) : bvh_->closest_hit(ray).has_value();
+        Ray run[MeshKernels::kMostRays];
+        MeshHit found[MeshKernels::kMostRays];
+        for (std::size_t first = 0; first < rays.size(); first += MeshKernels::kMostRays) {
+            const std::size_t count = std::min<std::size_t>(MeshKernels::kMostRays, rays.size() - first);
+            for (std::size_t i = 0; i < count; ++i) {
+                const FloatRay& r = rays[first + i];
+                run[i] = {to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
+            }
+            const std::span<const Ray> some(run, count);
+            hits += static_cast<std::uint64_t>(
+                std::popcount(set.occlusion ? bvh_->any_hits(some) : bvh_->closest_hits(some, found)));
         }
         return hits;
     }

@@ -26,6 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     std::string mesh, view = "object", peer, split = "sah";
+    std::vector<std::string> only;
     bool json = false;
     unsigned threads = 1;
     int repeats = 5;
@@ -189,6 +190,10 @@ void run(const Options& options)
         sets = make_ray_sets(
             mesh, *bvh, options.view == "nave" ? view_of_nave() : view_of_object(bvh->bounds()));
     }
+    if (!options.only.empty())
+        std::erase_if(sets, [&](const RaySet& set) {
+            return std::find(options.only.begin(), options.only.end(), set.name) == options.only.end();
+        });
     std::vector<std::unique_ptr<RayEngine>> engines;
     engines.push_back(make_heliograph_engine(mesh, split));
     if (options.peer == "embree") {
@@ -226,6 +231,7 @@ void add_rays(CLI::App& app)
     command->add_option("--repeats", options->repeats, "the median is told")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    command->add_option("--only", options->only, "ray sets to trace: primary, shadow, diffuse, ...");
     command->add_flag("--json", options->json, "JSON instead of the table");
     command->callback([options] { run(*options); });
 }

@@ -1,0 +1,125 @@
+#include "renderer/accel/mesh_kernels.h"
+
+#include "renderer/accel/exact_test.h"
+#include "renderer/accel/ray_run.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+// This file is compiled once for every target of Highway; what is above, for the baseline alone. The order of
+// the rest matters.
+// clang-format off
+#define HWY_DISABLED_TARGETS HWY_SSSE3 // so few processors stop there that the portable kernel will do
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "renderer/accel/mesh_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "renderer/accel/follow_apart-inl.h"
+#include "renderer/accel/follow_together-inl.h"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace renderer::HWY_NAMESPACE {
+namespace {
+
+template <bool kAnyHit>
+std::uint32_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+{
+    RayRun run;
+    const Following how = prepare_run(run, mesh, rays, count);
+    if (how == Following::none) return 0;
+    for (unsigned i = 0; i < count; ++i)
+        hits[i] = {std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
+    if (how == Following::together)
+        PacketWalk<kAnyHit>(mesh, run, hits).walk();
+    else
+        follow_apart<kAnyHit>(mesh, run, hits);
+    std::uint32_t found = 0;
+    for (unsigned i = 0; i < count; ++i) {
+        if (hits[i].primitive == TriangleBlock::kNone) continue;
+        found |= 1u << i;
+        hits[i].t *= run.ray_units[i];
+    }
+    return found;
+}
+
+bool closest_hit(const MeshView& mesh, const Ray& ray, MeshHit& hit)
+{
+    return trace<false>(mesh, &ray, 1, &hit) != 0;
+}
+
+bool any_hit(const MeshView& mesh, const Ray& ray)
+{
+    MeshHit hit;
+    return trace<true>(mesh, &ray, 1, &hit) != 0;
+}
+
+std::uint32_t closest_hits(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+{
+    return trace<false>(mesh, rays, count, hits);
+}
+
+std::uint32_t any_hits(const MeshView& mesh, const Ray* rays, unsigned count)
+{
+    MeshHit hits[RayRun::kRays];
+    return trace<true>(mesh, rays, count, hits);
+}
+
+} // namespace
+
+MeshKernels kernels()
+{
+    return {hwy::TargetName(HWY_TARGET), closest_hit, any_hit, closest_hits, any_hits};
+}
+
+} // namespace renderer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace renderer {
+
+namespace {
+
+std::vector<MeshKernels> find_kernels()
+{
+    struct Compiled {
+        std::int64_t target;
+        MeshKernels (*kernels)(); // none: not for this architecture
+    };
+    const Compiled compiled[]{{HWY_AVX3, HWY_CHOOSE_AVX3(kernels)},
+                              {HWY_AVX2, HWY_CHOOSE_AVX2(kernels)},
+                              {HWY_SSE4, HWY_CHOOSE_SSE4(kernels)},
+                              {HWY_NEON, HWY_CHOOSE_NEON(kernels)}};
+    std::vector<MeshKernels> found;
+    for (const Compiled& c : compiled)
+        if (c.kernels != nullptr && (hwy::SupportedTargets() & c.target) != 0) found.push_back(c.kernels());
+    if (const MeshKernels portable = (HWY_CHOOSE_FALLBACK(kernels))();
+        found.empty() || std::string_view(found.back().name) != portable.name)
+        found.push_back(portable);
+    return found;
+}
+
+} // namespace
+
+std::span<const MeshKernels> all_mesh_kernels()
+{
+    static const std::vector<MeshKernels> kernels = find_kernels();
+    return kernels;
+}
+
+const MeshKernels& mesh_kernels()
+{
+    static const MeshKernels best = all_mesh_kernels().front();
+    return best;
+}
+
+} // namespace renderer
+#endif // HWY_ONCE

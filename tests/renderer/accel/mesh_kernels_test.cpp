@@ -1,0 +1,171 @@
+// Every kernel that this processor can run, rays one by one and in runs: the same hits to the last bit.
+#include "renderer/accel/mesh_kernels.h"
+#include "tests/renderer/accel/mesh_rays.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <string>
+
+namespace {
+
+using namespace renderer;
+using namespace renderer::mesh_rays;
+
+constexpr unsigned kRun = MeshKernels::kMostRays;
+
+class EveryMeshKernel : public testing::TestWithParam<MeshKernels> {
+protected:
+    // The run's answers are those of its rays, one by one, from all triangles in turn.
+    void expect_as_brute_force(const MeshBvh& bvh, std::span<const Ray> rays)
+    {
+        MeshHit hits[kRun];
+        const std::uint32_t found = bvh.closest_hits(rays, hits, GetParam());
+        const std::uint32_t met = bvh.any_hits(rays, GetParam());
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const auto expected = bvh.closest_hit_brute_force(rays[i]);
+            const bool hit = (found >> i & 1) != 0;
+            ASSERT_TRUE(same(hit ? std::optional(hits[i]) : std::nullopt, expected))
+                << "ray " << i << " of a run";
+            ASSERT_EQ((met >> i & 1) != 0, expected.has_value()) << "ray " << i << " of a run";
+            ASSERT_TRUE(same(bvh.closest_hit(rays[i], GetParam()), expected)) << "ray " << i << " alone";
+            ASSERT_EQ(bvh.any_hit(rays[i], GetParam()), expected.has_value()) << "ray " << i << " alone";
+            hits_ += expected.has_value();
+            ++rays_;
+        }
+        ASSERT_EQ((found | met) >> (rays.size() - 1) >> 1, 0u) << "rays that are not there have hit";
+    }
+
+    int hits_ = 0, rays_ = 0;
+};
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         EveryMeshKernel,
+                         testing::ValuesIn(all_mesh_kernels().begin(), all_mesh_kernels().end()),
+                         [](const auto& suite) { return std::string(suite.param.name); });
+
+// A beam as a camera or a light of no size sends it: from about one point, to about one place.
+std::vector<Ray> beam(Random& random, const Mesh& mesh, std::size_t count)
+{
+    const Ray middle = random_ray(random, mesh);
+    const double width = std::pow(10, random.uniform(-6, -0.5)) * length(middle.direction);
+    const double spread = random.below(3) == 0 ? width : 0; // parallel, or from one point
+    std::vector<Ray> rays(count, middle);
+    for (Ray& ray : rays) {
+        ray.origin = ray.origin + random.direction() * spread;
+        ray.direction = middle.direction + random.direction() * width;
+        if (random.below(16) == 0) ray.direction[random.below(3)] = 0;
+        if (random.below(16) == 0) ray.t_max = random.uniform(0, 2);
+    }
+    return rays;
+}
+
+TEST_P(EveryMeshKernel, FollowsBeamsAsBruteForceWould)
+{
+    Random random(31);
+    for (const Mesh& mesh : ten_meshes()) {
+        const MeshBvh bvh = build(mesh);
+        for (int i = 0; i < 120 / kThinning; ++i)
+            expect_as_brute_force(bvh, beam(random, mesh, kRun));
+    }
+    EXPECT_GT(hits_, rays_ / 5);
+}
+
+TEST_P(EveryMeshKernel, FollowsRaysThatHaveNothingInCommon)
+{
+    Random random(32);
+    for (const Mesh& mesh : ten_meshes()) {
+        const MeshBvh bvh = build(mesh);
+        for (int i = 0; i < 120 / kThinning; ++i) {
+            std::vector<Ray> rays;
+            while (rays.size() < 1 + random.below(kRun))
+                rays.push_back(random_ray(random, mesh));
+            expect_as_brute_force(bvh, rays);
+        }
+    }
+    EXPECT_GT(hits_, rays_ / 5);
+}
+
+TEST_P(EveryMeshKernel, PassesOverRaysThatAreNoRays)
+{
+    Random random(33);
+    const Mesh mesh = soup(random, 2000, 1, 0.3);
+    const MeshBvh bvh = build(mesh);
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinity = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 300; ++i) {
+        std::vector<Ray> rays = beam(random, mesh, kRun);
+        for (Ray& ray : rays)
+            switch (random.below(12)) {
+            case 0:
+                ray.origin[random.below(3)] = nan;
+                break;
+            case 1:
+                ray.direction[random.below(3)] = nan;
+                break;
+            case 2:
+                ray.origin[random.below(3)] = infinity;
+                break;
+            case 3:
+                ray.direction[random.below(3)] = -infinity;
+                break;
+            case 4:
+                ray.t_min = nan;
+                break;
+            case 5:
+                ray.t_max = nan;
+                break;
+            case 6:
+                ray.direction = {};
+                break;
+            case 7:
+                ray.t_max = ray.t_min;
+                break;
+            default:
+                break;
+            }
+        expect_as_brute_force(bvh, rays);
+    }
+    EXPECT_GT(hits_, 100);
+}
+
+// From inside a closed mesh, in beams at its corners and edges.
+void expect_closed(const MeshKernels& kernels, const Mesh& mesh, Vec3d inside, double room, int beams)
+{
+    Random random(34);
+    const MeshBvh bvh = build(mesh);
+    MeshHit hits[kRun];
+    for (int i = 0; i < beams / kThinning; ++i) {
+        const Triangle& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+        const Vec3d origin = inside + random.direction() * (room * random.uniform());
+        std::vector<Ray> rays(kRun);
+        for (Ray& ray : rays) {
+            const Vec3d a = to_double(mesh.positions[t[random.below(3)]]),
+                        b = to_double(mesh.positions[t[random.below(3)]]);
+            const double w = random.uniform();
+            ray = {origin, a * w + b * (1 - w) - origin};
+        }
+        ASSERT_EQ(bvh.closest_hits(rays, hits, kernels), 0xffffu) << i;
+        ASSERT_EQ(bvh.any_hits(rays, kernels), 0xffffu) << i;
+    }
+}
+
+TEST_P(EveryMeshKernel, LetsNoRayOutOfAClosedMesh)
+{
+    Random random(35);
+    expect_closed(GetParam(), closed_sphere(random, {0, 0, 0}, 1, 6, 16, 16), {0, 0, 0}, 0.2, 20000);
+    const Vec3d far{148376, 1234, -223423}; // a float there is 1/64 wide
+    expect_closed(GetParam(), closed_sphere(random, far, 2, 2, 200, 200), far, 1, 10000);
+}
+
+TEST(MeshKernels, HaveAPortableOneToFallBackOn)
+{
+    const auto kernels = all_mesh_kernels();
+    ASSERT_FALSE(kernels.empty());
+    EXPECT_STREQ(kernels.front().name, mesh_kernels().name);
+    for (std::size_t i = 0; i < kernels.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_STRNE(kernels[i].name, kernels[j].name);
+}
+
+} // namespace
