@@ -1,6 +1,9 @@
 #include "renderer/trace.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 namespace renderer {
 
@@ -11,42 +14,73 @@ bool is_finite(Rgb c)
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }
 
-Rgb radiance(const Scene& scene,
-             const Plan& plan,
-             const Ray& ray,
-             const PixelSampler& sampler,
-             std::uint32_t sample,
-             RayTally& tally)
-{
-    switch (plan.transport) {
-    case TransportType::automatic: // make_plan has chosen: direct is what there is
-    case TransportType::direct:
-        return direct_radiance(scene, ray, sampler, sample, tally);
-    }
-    return {};
-}
+// Pixels whose samples are traced together: their rays run alike.
+constexpr std::uint32_t kBlock = 4;
 
-RgbSum pixel_sum(const Scene& scene,
-                 const Plan& plan,
-                 std::uint64_t seed,
-                 std::uint32_t x,
-                 std::uint32_t y,
-                 SampleRange slice,
-                 RayTally& tally)
-{
-    const PixelSampler sampler(seed, x, y);
-    RgbSum sum;
-    for (std::uint32_t s = slice.first; s < slice.end; ++s) {
-        const Sample2 jitter = sampler.sample_2d(s, static_cast<std::uint32_t>(Dimension::pixel));
-        const Vec3d direction =
-            scene.camera().direction(x + static_cast<double>(jitter.u0), y + static_cast<double>(jitter.u1));
-        const Rgb c = radiance(scene, plan, Ray{scene.camera().position(), direction}, sampler, s, tally);
-        if (is_finite(c))
-            sum += c;
-        else
-            ++tally.non_finite_samples;
+// Collects samples into runs, and what they find into the sums of their pixels, in the order of arrival.
+class SampleRuns {
+public:
+    SampleRuns(const Scene& scene, const Plan& plan, TracedUnit& out) : scene_(scene), plan_(plan), out_(out)
+    {
     }
-    return sum;
+
+    void add(const PixelSampler& sampler,
+             std::uint32_t x,
+             std::uint32_t y,
+             std::uint32_t number,
+             std::size_t pixel)
+    {
+        const Sample2 jitter = sampler.sample_2d(number, static_cast<std::uint32_t>(Dimension::pixel));
+        const Vec3d direction =
+            scene_.camera().direction(x + static_cast<double>(jitter.u0), y + static_cast<double>(jitter.u1));
+        samples_[count_] = {Ray{scene_.camera().position(), direction}, &sampler, number};
+        pixels_[count_] = pixel;
+        if (++count_ == kMostSamples) flush();
+    }
+
+    // Samplers that were given are no longer looked at.
+    void flush()
+    {
+        Rgb found[kMostSamples];
+        switch (plan_.transport) {
+        case TransportType::automatic: // make_plan has chosen: direct is what there is
+        case TransportType::direct:
+            direct_radiance(scene_, {samples_, count_}, found, out_.tally);
+        }
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (is_finite(found[i]))
+                out_.sums.sums[pixels_[i]] += found[i];
+            else
+                ++out_.tally.non_finite_samples;
+        }
+        count_ = 0;
+    }
+
+private:
+    const Scene& scene_;
+    const Plan& plan_;
+    TracedUnit& out_;
+    std::size_t count_ = 0;
+    CameraSample samples_[kMostSamples];
+    std::size_t pixels_[kMostSamples]; // of the tile
+};
+
+// The slice of one block of the tile, sample by sample, so that a pixel's samples add up in their order.
+void trace_block(
+    SampleRuns& runs, std::uint64_t seed, const PixelRect& tile, const PixelRect& block, SampleRange slice)
+{
+    std::optional<PixelSampler> samplers[kBlock * kBlock];
+    for (std::uint32_t y = 0; y < block.height; ++y)
+        for (std::uint32_t x = 0; x < block.width; ++x)
+            samplers[y * kBlock + x].emplace(seed, block.x + x, block.y + y);
+    for (std::uint32_t s = slice.first; s < slice.end; ++s)
+        for (std::uint32_t y = 0; y < block.height; ++y)
+            for (std::uint32_t x = 0; x < block.width; ++x) {
+                const std::size_t pixel =
+                    std::size_t{block.y + y - tile.y} * tile.width + (block.x + x - tile.x);
+                runs.add(*samplers[y * kBlock + x], block.x + x, block.y + y, s, pixel);
+            }
+    runs.flush();
 }
 
 } // namespace
@@ -57,12 +91,16 @@ std::optional<TracedUnit> trace(const Scene& scene,
                                 const WorkUnit& unit,
                                 const std::stop_token& stop)
 {
-    TracedUnit out{{unit.tile, {}}, {}};
-    out.sums.sums.reserve(std::size_t{unit.tile.width} * unit.tile.height);
-    for (std::uint32_t y = unit.tile.y; y < unit.tile.y + unit.tile.height; ++y) {
+    const PixelRect& tile = unit.tile;
+    TracedUnit out{{tile, std::vector<RgbSum>(std::size_t{tile.width} * tile.height)}, {}};
+    SampleRuns runs(scene, plan, out);
+    for (std::uint32_t y = 0; y < tile.height; y += kBlock) {
         if (stop.stop_requested()) return std::nullopt;
-        for (std::uint32_t x = unit.tile.x; x < unit.tile.x + unit.tile.width; ++x)
-            out.sums.sums.push_back(pixel_sum(scene, plan, seed, x, y, unit.slice, out.tally));
+        for (std::uint32_t x = 0; x < tile.width; x += kBlock) {
+            const PixelRect block{
+                tile.x + x, tile.y + y, std::min(kBlock, tile.width - x), std::min(kBlock, tile.height - y)};
+            trace_block(runs, seed, tile, block, unit.slice);
+        }
     }
     return out;
 }

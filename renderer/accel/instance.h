@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <variant>
 
 namespace renderer {
@@ -55,6 +56,11 @@ public:
     };
     std::optional<Candidate> closest_hit(const Ray& world_ray) const;
     bool any_hit(const Ray& world_ray) const;
+    // The same for a run of at most kMostRays rays: bit i of the result is set where ray i hit, and hits[i] says
+    // where.
+    std::uint32_t closest_hits(std::span<const Ray> world_rays, Candidate* hits) const;
+    std::uint32_t any_hits(std::span<const Ray> world_rays) const;
+    static constexpr unsigned kMostRays = MeshKernels::kMostRays;
     // `instance` of the result is left to the caller.
     SceneHit resolve(const Ray& world_ray, const Candidate& candidate) const;
 

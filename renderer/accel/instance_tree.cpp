@@ -10,6 +10,14 @@ struct InstanceTree::Best {
     bool found = false;
     std::uint32_t instance = 0;
     Instance::Candidate candidate{};
+
+    // Takes the hit if it is nearer, or as near and of an earlier instance.
+    bool improve(std::uint32_t number, const Instance::Candidate& hit)
+    {
+        if (found && (hit.t > candidate.t || (hit.t == candidate.t && number > instance))) return false;
+        *this = {true, number, hit};
+        return true;
+    }
 };
 
 InstanceTree::InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool)
@@ -33,15 +41,11 @@ void InstanceTree::consider(const Ray& ray, RayKind kind, std::uint32_t number, 
 {
     if (!instances_[number].visible_to(kind)) return;
     const std::optional<Instance::Candidate> hit = instances_[number].closest_hit(ray);
-    if (!hit) return;
-    if (best.found && (hit->t > best.candidate.t || (hit->t == best.candidate.t && number > best.instance)))
-        return;
-    best = {true, number, *hit};
+    if (hit) best.improve(number, *hit);
 }
 
-std::optional<SceneHit> InstanceTree::resolve(const Ray& ray, const Best& best) const
+SceneHit InstanceTree::resolve(const Ray& ray, const Best& best) const
 {
-    if (!best.found) return std::nullopt;
     SceneHit hit = instances_[best.instance].resolve(ray, best.candidate);
     hit.instance = best.instance;
     return hit;
@@ -81,6 +85,7 @@ std::optional<SceneHit> InstanceTree::closest_hit(const Ray& ray, RayKind kind) 
                      return false;
                  });
     }
+    if (!best.found) return std::nullopt;
     return resolve(ray, best);
 }
 
@@ -106,11 +111,138 @@ bool InstanceTree::any_hit(const Ray& ray, RayKind kind) const
     return found;
 }
 
+// A run of rays on its way down the tree: instances are asked with all the rays that reach their boxes.
+template <bool kAnyHit>
+class InstanceTree::RunWalk {
+public:
+    RunWalk(const InstanceTree& tree, std::span<const Ray> rays, RayKind kind)
+        : tree_(tree), rays_(rays), kind_(kind), boxes_(rays, tree.bounds_)
+    {
+    }
+
+    void walk()
+    {
+        struct Waiting {
+            const BvhNode<double>* node;
+            std::uint32_t rays;
+            double entry;
+        };
+        if (tree_.bvh_.empty()) return;
+        Waiting stack[2 * kMaxBvhDepth];
+        unsigned waiting = 0;
+        const auto enter = [&](const BvhNode<double>& node) {
+            Waiting next{&node, 0, 0};
+            next.rays = kernels_.enter_box(boxes_, node.lower, node.upper, next.entry);
+            return next;
+        };
+        if (const Waiting root = enter(tree_.bvh_.root); root.rays != 0) stack[waiting++] = root;
+        while (waiting != 0) {
+            const Waiting next = stack[--waiting];
+            if (next.node->count != 0) {
+                for (std::uint32_t i = 0; i < next.node->count; ++i)
+                    ask(tree_.bvh_.order[next.node->first + i], next.rays);
+                if (kAnyHit && found_ == boxes_.rays) return;
+                continue;
+            }
+            const BvhPair<double>& pair = tree_.bvh_.pairs[next.node->first];
+            Waiting one = enter(pair.child[0]), other = enter(pair.child[1]);
+            if (other.entry < one.entry) std::swap(one, other); // the nearer goes first
+            if (other.rays != 0) stack[waiting++] = other;
+            if (one.rays != 0) stack[waiting++] = one;
+        }
+    }
+
+    std::uint32_t found() const { return found_; }
+    const Best& best(std::size_t ray) const { return best_[ray]; }
+
+private:
+    // `rays` may be done by now, all the same: what they find is no better.
+    void ask(std::uint32_t number, std::uint32_t rays)
+    {
+        const Instance& instance = tree_.instances_[number];
+        if (kAnyHit) rays &= ~found_;
+        if (rays == 0 || !instance.visible_to(kind_)) return;
+        Ray asking[kMostRays];
+        unsigned from[kMostRays];
+        unsigned count = 0;
+        for (; rays != 0; rays &= rays - 1) {
+            const auto ray = static_cast<unsigned>(__builtin_ctz(rays));
+            asking[count] = rays_[ray];
+            // Past the best hit, ties still seen.
+            if ((found_ >> ray & 1) != 0)
+                asking[count].t_max =
+                    std::min(rays_[ray].t_max,
+                             std::nextafter(boxes_.end[ray], std::numeric_limits<double>::infinity()));
+            from[count++] = ray;
+        }
+        if (kAnyHit) {
+            for (std::uint32_t met = instance.any_hits({asking, count}); met != 0; met &= met - 1) {
+                const unsigned ray = from[__builtin_ctz(met)];
+                found_ |= 1u << ray;
+                boxes_.end[ray] = -std::numeric_limits<double>::infinity();
+            }
+            return;
+        }
+        Instance::Candidate hits[kMostRays];
+        for (std::uint32_t met = instance.closest_hits({asking, count}, hits); met != 0; met &= met - 1) {
+            const auto i = static_cast<unsigned>(__builtin_ctz(met));
+            Best& best = best_[from[i]];
+            if (!best.improve(number, hits[i])) continue;
+            found_ |= 1u << from[i];
+            boxes_.end[from[i]] = hits[i].t;
+        }
+    }
+
+    const InstanceTree& tree_;
+    std::span<const Ray> rays_;
+    RayKind kind_;
+    const MeshKernels& kernels_ = mesh_kernels();
+    BoxRays boxes_;
+    std::uint32_t found_ = 0;
+    Best best_[kMostRays];
+};
+
+std::uint32_t
+InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind) const
+{
+    if (bvh_.order.size() == 1) {
+        const std::uint32_t number = bvh_.order.front();
+        const Instance& only = instances_[number];
+        if (!only.visible_to(kind)) return 0;
+        Instance::Candidate found[kMostRays];
+        const std::uint32_t met = only.closest_hits(rays, found);
+        for (std::uint32_t left = met; left != 0; left &= left - 1) {
+            const auto i = static_cast<unsigned>(__builtin_ctz(left));
+            hits[i] = resolve(rays[i], {true, number, found[i]});
+        }
+        return met;
+    }
+    RunWalk<false> run(*this, rays, kind);
+    run.walk();
+    for (std::uint32_t left = run.found(); left != 0; left &= left - 1) {
+        const auto i = static_cast<unsigned>(__builtin_ctz(left));
+        hits[i] = resolve(rays[i], run.best(i));
+    }
+    return run.found();
+}
+
+std::uint32_t InstanceTree::any_hits(std::span<const Ray> rays, RayKind kind) const
+{
+    if (bvh_.order.size() == 1) {
+        const Instance& only = instances_[bvh_.order.front()];
+        return only.visible_to(kind) ? only.any_hits(rays) : 0;
+    }
+    RunWalk<true> run(*this, rays, kind);
+    run.walk();
+    return run.found();
+}
+
 std::optional<SceneHit> InstanceTree::closest_hit_brute_force(const Ray& ray, RayKind kind) const
 {
     Best best;
     for (std::uint32_t i = 0; i < instances_.size(); ++i)
         consider(ray, kind, i, best);
+    if (!best.found) return std::nullopt;
     return resolve(ray, best);
 }
 

@@ -22,6 +22,12 @@ public:
 
     std::optional<SceneHit> closest_hit(const Ray& ray, RayKind kind = RayKind::other) const;
     bool any_hit(const Ray& ray, RayKind kind = RayKind::other) const;
+    // The same for a run of at most kMostRays rays, best of such as run alike: bit i of the result is set where
+    // ray i hit, and hits[i] says where.
+    std::uint32_t
+    closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind = RayKind::other) const;
+    std::uint32_t any_hits(std::span<const Ray> rays, RayKind kind = RayKind::other) const;
+    static constexpr unsigned kMostRays = Instance::kMostRays;
     // The same answer from every instance in turn: for tests and for measuring.
     std::optional<SceneHit> closest_hit_brute_force(const Ray& ray, RayKind kind = RayKind::other) const;
 
@@ -31,8 +37,10 @@ public:
 
 private:
     struct Best;
+    template <bool kAnyHit>
+    class RunWalk;
     void consider(const Ray& ray, RayKind kind, std::uint32_t number, Best& best) const;
-    std::optional<SceneHit> resolve(const Ray& ray, const Best& best) const;
+    SceneHit resolve(const Ray& ray, const Best& best) const; // one that was found
 
     std::vector<Instance> instances_;
     Bvh<double> bvh_; // `order` holds instance numbers

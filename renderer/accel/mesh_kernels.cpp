@@ -22,6 +22,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "renderer/accel/enter_box-inl.h"
 #include "renderer/accel/follow_apart-inl.h"
 #include "renderer/accel/follow_together-inl.h"
 // clang-format on
@@ -77,7 +78,7 @@ std::uint32_t any_hits(const MeshView& mesh, const Ray* rays, unsigned count)
 
 MeshKernels kernels()
 {
-    return {hwy::TargetName(HWY_TARGET), closest_hit, any_hit, closest_hits, any_hits};
+    return {hwy::TargetName(HWY_TARGET), closest_hit, any_hit, closest_hits, any_hits, enter_box};
 }
 
 } // namespace renderer::HWY_NAMESPACE

@@ -6,6 +6,7 @@
 // Threads  any number at once. Cost: no allocation, no lock; one indirect call a ray or a run of rays.
 #pragma once
 
+#include "renderer/accel/box_rays.h"
 #include "renderer/accel/mesh_hit.h"
 #include "renderer/accel/triangle_block.h"
 #include "renderer/accel/wide_bvh.h"
@@ -33,6 +34,9 @@ struct MeshKernels {
     // Rays that run alike are followed together.
     std::uint32_t (*closest_hits)(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits);
     std::uint32_t (*any_hits)(const MeshView& mesh, const Ray* rays, unsigned count);
+
+    // Rays of the run that are inside a box within [begin, end], and where the first of them enters.
+    std::uint32_t (*enter_box)(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest);
 
     static constexpr unsigned kMostRays = 16;
 };

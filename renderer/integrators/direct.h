@@ -2,8 +2,8 @@
 // detour.
 //
 // Units   radiance, linear Rec. 709, W/(m^2 sr).
-// Cost    one camera ray, one shadow ray a light that reaches the surface's front, one for the environment;
-//         no allocation, no lock, no virtual call.
+// Cost    a sample: one camera ray, one shadow ray a light that reaches the surface's front, one for the
+//         environment; no allocation, no lock, no virtual call.
 // Source  the light transport equation cut after one scattering: J. Kajiya, "The Rendering Equation", 1986.
 #pragma once
 
@@ -12,7 +12,9 @@
 #include "renderer/sampling/sampler.h"
 #include "renderer/scene/scene.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace renderer {
 
@@ -32,10 +34,19 @@ struct RayTally {
     }
 };
 
-Rgb direct_radiance(const Scene& scene,
-                    const Ray& camera_ray,
-                    const PixelSampler& sampler,
-                    std::uint32_t sample,
-                    RayTally& tally);
+// One sample of a pixel: the ray that sees it, and the numbers that it may use.
+struct CameraSample {
+    Ray ray;
+    const PixelSampler* sampler;
+    std::uint32_t number; // of the pixel's samples
+};
+
+// Radiance of each of at most kMostSamples samples; each is a function of that sample alone. Fastest where their
+// rays run alike: they, and their shadow rays, are followed together.
+void direct_radiance(const Scene& scene,
+                     std::span<const CameraSample> samples,
+                     std::span<Rgb> radiance,
+                     RayTally& tally);
+inline constexpr std::size_t kMostSamples = InstanceTree::kMostRays;
 
 } // namespace renderer

@@ -33,7 +33,8 @@ double pdf_power_lobe(double one_minus_cos, double exponent);
 // An orthonormal frame around a unit normal; the same normal gives the same frame.
 // Source  T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 struct Frame {
-    Vec3f x, y, z;
+    Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    Frame() = default; // the world's own
     explicit Frame(Vec3f normal);
     Vec3f to_world(Vec3f v) const { return x * v.x + y * v.y + z * v.z; }
     Vec3f to_local(Vec3f v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }

@@ -29,7 +29,7 @@ struct Surface {
     SurfacePoint point; // where shadow rays leave from
     Vec3f geometric;    // unit normals, both on the viewer's side of the surface
     Frame shading;
-    const Bsdf* bsdf;
+    const Bsdf* bsdf = nullptr;
 };
 
 class Scene {

@@ -1,0 +1,48 @@
+// BoxRays: a run of rays side by side, for the boxes of the upper level.
+//
+// Frame    the world, in double. Boxes are met as if larger by the slack of double arithmetic on each ray.
+// Promise  SlabRay's: signed zeros, zero directions and flat boxes keep their hits.
+#pragma once
+
+#include "renderer/geometry/box.h"
+#include "renderer/geometry/ray.h"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace renderer {
+
+struct BoxRays {
+    static constexpr unsigned kRays = 16;
+    template <typename T>
+    using Lanes = T[kRays];
+
+    alignas(64) Lanes<double> near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
+    alignas(64) Lanes<double> begin;
+    alignas(64) Lanes<double> end; // what is behind it does not matter; -infinity: nor does the ray
+    std::uint32_t rays = 0;        // bit i: ray i is there and traceable
+
+    // At most kRays rays; `bounds` of all boxes to come.
+    BoxRays(std::span<const Ray> given, const Bounds3d& bounds)
+    {
+        const double size = std::max(max_abs(bounds.lower), max_abs(bounds.upper));
+        for (unsigned i = 0; i < kRays; ++i) {
+            const bool traceable = i < given.size() && is_traceable(given[i]);
+            const Ray ray = traceable ? given[i] : Ray{};
+            const SlabRay<double> slabs(
+                ray.origin, reciprocal(ray.direction), 0x1p-49 * (max_abs(ray.origin) + size));
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                near_origin[axis][i] = slabs.near_origin[axis];
+                far_origin[axis][i] = slabs.far_origin[axis];
+                near_inverse[axis][i] = slabs.near_inverse[axis];
+                far_inverse[axis][i] = slabs.far_inverse[axis];
+            }
+            begin[i] = ray.t_min;
+            end[i] = traceable ? ray.t_max : -std::numeric_limits<double>::infinity();
+            if (traceable) rays |= 1u << i;
+        }
+    }
+};
+
+} // namespace renderer
