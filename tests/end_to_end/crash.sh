@@ -5,7 +5,7 @@
 start_service
 cd "$WORK"
 mesh=$(upload "$ASSETS/knot.obj")
-jq -n --arg mesh "$mesh" '{scene: {objects: [{mesh: $mesh}]}, image: {width: 160, height: 120}, quality: {samples: 512}}' >scene.json
+jq -n --arg mesh "$mesh" '{scene: {objects: [{mesh: $mesh}]}, image: {width: 160, height: 120}, quality: {samples: 192}}' >scene.json
 
 for round in 1 2 3; do
     id=$(jq --argjson seed "$round" '.seed = $seed' scene.json | curl --fail -sS --json @- "$U/v1/jobs" | jq -r .id)
