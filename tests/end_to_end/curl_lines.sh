@@ -1,10 +1,23 @@
 #!/bin/sh
-# The five curl lines of the contract do what they say.
+# The lines of the README and the five curl lines of the contract do what they say.
 # shellcheck source-path=SCRIPTDIR disable=SC2119
 . "$(dirname "$0")/service.sh"
+README=$(cd "$(dirname "$0")/../.." && pwd)/README.md
 start_service
 cd "$WORK"
 cp "$ASSETS/knot.obj" .
+
+# The README's own lines, pasted: only the address is ours, and the picture is small.
+sed -n '/^U=http/,/^```$/p' "$README" | sed '1d;$d;s/{"scene":/{"image":{"width":96,"height":64},"scene":/' >readme.sh
+grep -q /image readme.sh || fail "the README's lines are no longer found"
+cp knot.obj bunny.obj
+U=$U sh -eu readme.sh >readme.out 2>&1 || fail "the README's lines: $(cat readme.out)"
+is_png out.png
+# Without `files` there is no id, and the same line says why.
+submit=$(grep '^id=' readme.sh | sed 's/job\.json/scene.json/')
+! U=$U sh -euc "$submit" >readme.out 2>&1 || fail "a scene without files gave an id"
+grep -q missing_asset readme.out || fail "no word of the missing file: $(cat readme.out)"
+
 mesh=$(upload knot.obj)
 jq -n --arg mesh "$mesh" '{scene: {objects: [{mesh: "knot.obj"}]}, files: {"knot.obj": $mesh},
     image: {width: 96, height: 64}, quality: {samples: 4}}' >scene.json
