@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <vector>
 
 namespace bench {
 
@@ -14,11 +15,14 @@ namespace {
 
 class HeliographEngine : public RayEngine {
 public:
-    HeliographEngine(const Mesh& mesh, BvhSplit split) : mesh_(mesh), split_(split) {}
+    HeliographEngine(const Mesh& mesh, BvhSplit split, const MeshKernels& kernels)
+        : mesh_(mesh), split_(split), kernels_(kernels)
+    {
+    }
 
     std::string name() const override
     {
-        return split_ == BvhSplit::sah ? "Heliograph" : "Heliograph, midpoint";
+        return std::string("Heliograph, ") + kernels_.name + (split_ == BvhSplit::sah ? "" : ", midpoint");
     }
     void build() override
     {
@@ -43,8 +47,8 @@ public:
                 run[i] = {to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
             }
             const std::span<const Ray> some(run, count);
-            hits += static_cast<std::uint64_t>(
-                std::popcount(set.occlusion ? bvh_->any_hits(some) : bvh_->closest_hits(some, found)));
+            hits += static_cast<std::uint64_t>(std::popcount(
+                set.occlusion ? bvh_->any_hits(some, kernels_) : bvh_->closest_hits(some, found, kernels_)));
         }
         return hits;
     }
@@ -52,14 +56,19 @@ public:
 private:
     const Mesh& mesh_;
     BvhSplit split_;
+    MeshKernels kernels_;
     std::optional<MeshBvh> bvh_;
 };
 
 } // namespace
 
-std::unique_ptr<RayEngine> make_heliograph_engine(const Mesh& mesh, BvhSplit split)
+std::vector<std::unique_ptr<RayEngine>>
+make_heliograph_engines(const Mesh& mesh, BvhSplit split, bool every_kernel)
 {
-    return std::make_unique<HeliographEngine>(mesh, split);
+    std::vector<std::unique_ptr<RayEngine>> engines;
+    for (const MeshKernels& kernels : all_mesh_kernels().first(every_kernel ? all_mesh_kernels().size() : 1))
+        engines.push_back(std::make_unique<HeliographEngine>(mesh, split, kernels));
+    return engines;
 }
 
 } // namespace bench

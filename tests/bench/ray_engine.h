@@ -25,7 +25,9 @@ public:
     virtual std::uint64_t trace(const RaySet& set, std::span<const FloatRay> rays) const = 0;
 };
 
-std::unique_ptr<RayEngine> make_heliograph_engine(const renderer::Mesh& mesh, renderer::BvhSplit split);
+// With the best kernel of this processor, or one engine a kernel, the best first. The mesh outlives them.
+std::vector<std::unique_ptr<RayEngine>>
+make_heliograph_engines(const renderer::Mesh& mesh, renderer::BvhSplit split, bool every_kernel);
 
 // Every mode of Embree; none where this program was built without it. The mesh outlives them.
 std::vector<std::unique_ptr<RayEngine>> make_embree_engines(const renderer::Mesh& mesh);

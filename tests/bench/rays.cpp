@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 struct Options {
     std::string mesh, view = "object", peer, split = "sah";
     std::vector<std::string> only;
-    bool json = false;
+    bool json = false, every_kernel = false;
     unsigned threads = 1;
     int repeats = 5;
 };
@@ -194,8 +194,7 @@ void run(const Options& options)
         std::erase_if(sets, [&](const RaySet& set) {
             return std::find(options.only.begin(), options.only.end(), set.name) == options.only.end();
         });
-    std::vector<std::unique_ptr<RayEngine>> engines;
-    engines.push_back(make_heliograph_engine(mesh, split));
+    auto engines = make_heliograph_engines(mesh, split, options.every_kernel);
     if (options.peer == "embree") {
         auto peers = make_embree_engines(mesh);
         if (peers.empty())
@@ -232,6 +231,7 @@ void add_rays(CLI::App& app)
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command->add_option("--only", options->only, "ray sets to trace: primary, shadow, diffuse, ...");
+    command->add_flag("--kernels", options->every_kernel, "every kernel of ours, not only the best");
     command->add_flag("--json", options->json, "JSON instead of the table");
     command->callback([options] { run(*options); });
 }
