@@ -120,16 +120,17 @@ struct Traveller {
     Child* stack = nullptr;
 };
 
+// Asks for what a child will be read from: all of a node, most of a leaf.
 HWY_INLINE void fetch(const MeshView& mesh, std::uint32_t code)
 {
     const bool leaf = (code & ChildCode::kLeaf) != 0;
-    const void* const at = leaf ? static_cast<const void*>(mesh.leaves + (code & ChildCode::kNumber))
-                                : static_cast<const void*>(mesh.nodes + code);
-    const auto* const bytes = static_cast<const char*>(at);
-    const std::size_t size =
-        leaf ? ((code & ChildCode::kTwoBlocks) != 0 ? 2 : 1) * sizeof(TriangleBlock) : sizeof(WideNode);
-    for (std::size_t i = 0; i < size; i += 64)
-        __builtin_prefetch(bytes + i);
+    const auto* const bytes = leaf ? reinterpret_cast<const char*>(mesh.leaves + (code & ChildCode::kNumber))
+                                   : reinterpret_cast<const char*>(mesh.nodes + code);
+    static_assert(sizeof(WideNode) <= 256);
+    __builtin_prefetch(bytes);
+    __builtin_prefetch(bytes + 64);
+    __builtin_prefetch(bytes + 128);
+    __builtin_prefetch(bytes + 192);
 }
 
 // Visits a node or a leaf. False: the ray has ended.
