@@ -1,5 +1,6 @@
 #include "renderer/io/read_mtl.h"
 
+#include "renderer/io/import_bounds.h"
 #include "renderer/io/text.h"
 
 #include <algorithm>
@@ -77,13 +78,11 @@ bool is_map(std::string_view word)
 
 } // namespace
 
-void read_mtl(std::string_view text,
+bool read_mtl(std::string_view text,
               std::string_view file,
               std::vector<MeshMaterial>& materials,
               std::vector<std::string>& notes)
 {
-    constexpr std::size_t kMostNotes = 8;
-    std::size_t bad_lines = 0;
     MeshMaterial* material = nullptr;
     Lines lines(text, true);
     while (const auto line = lines.next()) {
@@ -91,6 +90,7 @@ void read_mtl(std::string_view text,
         const std::string_view word = take_word(rest);
         bool good = true;
         if (word == "newmtl") {
+            if (materials.size() == kMostMaterials) return false;
             materials.push_back({clean_utf8(trimmed(rest)), {}, {}, 0, {}});
             material = &materials.back();
         } else if (!material) {
@@ -105,10 +105,11 @@ void read_mtl(std::string_view text,
             const std::string name = clean_utf8(texture_name(rest));
             if (!name.empty()) material->textures.push_back(name);
         }
-        if (!good && ++bad_lines <= kMostNotes)
+        if (!good && notes.size() < kMostNotes)
             notes.push_back("material file " + clean_utf8(file) + ", line " + std::to_string(lines.number()) +
                             ": " + quoted(trimmed(*line)) + " cannot be read; the default stays");
     }
+    return true;
 }
 
 } // namespace renderer

@@ -1,7 +1,7 @@
 // read_mtl: the materials of a Wavefront MTL file, as far as they are modelled (Kd, Ks, Ns, texture names).
 //
-// Errors  none: a line that cannot be read is told in `notes` and leaves the default. Colours are brought
-//         into [0, 1].
+// Errors  none but too many materials: a line that cannot be read is told in `notes`, of which there are
+//         kMostNotes at most, and leaves the default. Colours are brought into [0, 1].
 #pragma once
 
 #include "renderer/geometry/mesh.h"
@@ -12,8 +12,8 @@
 
 namespace renderer {
 
-// Appends to `materials`. `file` is for the notes.
-void read_mtl(std::string_view text,
+// Appends to `materials`; false at the one that is over kMostMaterials. `file` is for the notes.
+bool read_mtl(std::string_view text,
               std::string_view file,
               std::vector<MeshMaterial>& materials,
               std::vector<std::string>& notes);

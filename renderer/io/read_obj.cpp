@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,8 +41,8 @@ private:
     Check references() const;
     void group(bool object, std::string_view name);
     void use_material(std::string_view name);
-    void material_files(std::string_view names);
-    void material_file(std::string_view name, std::string_view bytes);
+    Check material_files(std::string_view names);
+    Check material_file(std::string_view name, std::string_view text);
     void finish_materials();
     void finish_notes();
 
@@ -66,6 +67,7 @@ private:
     std::vector<Triangle> pieces_;
     std::array<std::uint64_t, 3> largest_{}, largest_line_{}; // references of each kind, checked at the end
     std::map<std::string, std::uint32_t, std::less<>> material_numbers_, part_numbers_;
+    std::set<std::string, std::less<>> material_files_, missing_files_; // by the names that the file uses
     bool has_objects_ = false, found_materials_ = false;
     std::uint64_t lines_and_points_ = 0, free_form_ = 0;
 };
@@ -184,25 +186,32 @@ void ObjReader::use_material(std::string_view name)
     obj_.material = at->second;
 }
 
-void ObjReader::material_file(std::string_view name, std::string_view text)
+// Tools name the same file again at every object.
+ObjReader::Check ObjReader::material_file(std::string_view name, std::string_view text)
 {
     found_materials_ = true;
-    read_mtl(text, name, result_.mesh.materials, result_.notes);
+    if (!material_files_.emplace(name).second) return std::nullopt;
+    if (read_mtl(text, name, result_.mesh.materials, result_.notes)) return std::nullopt;
+    return ImportFault{"over_limit",
+                       "the material files up to " + quoted(name) + " have more than " +
+                           std::to_string(kMostMaterials) + " materials, which is the limit"};
 }
 
 // `mtllib` lists names; a name with blanks in it is as common, so the whole line is tried first.
-void ObjReader::material_files(std::string_view names)
+ObjReader::Check ObjReader::material_files(std::string_view names)
 {
     names = trimmed(names);
     if (const auto bytes = files_.open(names)) return material_file(names, text_of(*bytes));
     for (std::string_view name = take_word(names); !name.empty(); name = take_word(names)) {
         if (const auto bytes = files_.open(name)) {
-            material_file(name, text_of(*bytes));
-        } else if (result_.notes.size() < kMostNotes) {
+            if (auto bad = material_file(name, text_of(*bytes))) return bad;
+        } else if (missing_files_.size() < kMostNotes && result_.notes.size() < kMostNotes &&
+                   missing_files_.emplace(name).second) {
             result_.notes.push_back("material file " + quoted(name) +
                                     " is not among the job's files; its materials are grey");
         }
     }
+    return std::nullopt;
 }
 
 ObjReader::Check ObjReader::statement(std::string_view word, std::string_view rest)
@@ -219,7 +228,7 @@ ObjReader::Check ObjReader::statement(std::string_view word, std::string_view re
     else if (word == "usemtl")
         use_material(rest);
     else if (word == "mtllib")
-        material_files(rest);
+        return material_files(rest);
     else if (word == "curv" || word == "curv2" || word == "surf")
         ++free_form_;
     return std::nullopt;
@@ -280,10 +289,6 @@ ImportResult ObjReader::read()
         if (auto bad = statement(word, rest)) return std::move(*bad);
     }
     if (auto bad = references()) return std::move(*bad);
-    if (result_.mesh.materials.size() > kMostMaterials)
-        return ImportFault{"over_limit",
-                           std::to_string(result_.mesh.materials.size()) + " materials, the limit is " +
-                               std::to_string(kMostMaterials)};
     obj_.make_parts_contiguous(result_.mesh.parts);
     finish_materials();
     finish_notes();

@@ -128,6 +128,49 @@ TEST(ReadObj, TakesMaterialsFromItsMtl)
     EXPECT_THAT(result.notes, testing::ElementsAre(testing::HasSubstr("\"gone\"")));
 }
 
+TEST(ReadObj, ReadsAnMtlOnceHoweverOftenItIsNamed)
+{
+    std::string text;
+    for (int i = 0; i < 100'000; ++i)
+        text += "mtllib a.mtl\n";
+    std::string materials;
+    for (int i = 0; i < 1000; ++i)
+        materials += "newmtl m" + std::to_string(i) + "\nKd 1 0 0\n";
+    const ImportedMesh result =
+        mesh_of(text + "mtllib gone.mtl\nmtllib gone.mtl\n" + kSquare + "f 1 2 3\n", {{"a.mtl", materials}});
+    EXPECT_EQ(result.mesh.materials.size(), 1001u); // and the grey of the triangle that names none
+    EXPECT_EQ(result.notes.size(), 1u);
+}
+
+TEST(ReadObj, StopsAtMoreMaterialsThanCanBeNumbered)
+{
+    std::string names, materials;
+    for (int i = 0; i < 20'000; ++i)
+        materials += "newmtl m\n";
+    Files files;
+    for (char c = 'a'; c <= 'd'; ++c) {
+        names += std::string("mtllib ") + c + ".mtl\n";
+        files[std::string(1, c) + ".mtl"] = materials;
+    }
+    auto result = read(names + kSquare + "f 1 2 3\n", files);
+    ASSERT_TRUE(std::holds_alternative<ImportFault>(result));
+    EXPECT_EQ(std::get<ImportFault>(result).code, "over_limit");
+    EXPECT_THAT(std::get<ImportFault>(result).detail, testing::HasSubstr("\"d.mtl\""));
+}
+
+TEST(ReadObj, TellsOfBadMaterialLinesNoMoreThanOfOthers)
+{
+    std::string names, materials = "newmtl m\n";
+    for (int i = 0; i < 20; ++i)
+        materials += "Kd nothing\n";
+    Files files;
+    for (char c = 'a'; c <= 'z'; ++c) {
+        names += std::string("mtllib ") + c + ".mtl\n";
+        files[std::string(1, c) + ".mtl"] = materials;
+    }
+    EXPECT_EQ(mesh_of(names + kSquare + "f 1 2 3\n", files).notes.size(), 16u);
+}
+
 TEST(ReadObj, SaysWhenItsMtlIsMissing)
 {
     const ImportedMesh result = mesh_of("mtllib gone.mtl\nusemtl red\n" + kSquare + "f 1 2 3\n");
