@@ -1,7 +1,9 @@
-// The file desk: how the importer, which can open nothing, gets the files that a mesh names. It asks by name
-// over a socket; the service answers with an open descriptor, or that there is none. So exactly the files
-// that are needed are opened, and it is the service, not the importer, that knows which.
+// The file desk: how the importer gets the files that a mesh names. It asks by name over a socket; the service
+// answers with an open descriptor, or that there is none. So exactly the files that are needed are opened, and
+// it is the service, not the importer, that knows which.
 //
+// Safety  this is how the importer behaves, not what it is held to: one that a file has taken over may still
+//         open what the service's user may (see lockdown.h).
 // Errors  the importer's side treats a closed desk as "there is none"; the service's side answers what it
 //         does not understand the same way, and closes after kMostQuestions.
 #pragma once

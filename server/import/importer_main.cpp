@@ -1,7 +1,8 @@
 // heliograph-import NAME TRIANGLES MEMORY_BYTES OUTPUT_BYTES CPU_S: imports one mesh for heliographd, which
 // starts it.
 //
-// Descriptors  2 log, 3 the file, 4 the output in the flat form, 5 the file desk. It opens nothing else.
+// Descriptors  2 log, 3 the file, 4 the output in the flat form, 5 the file desk. It opens nothing else by its
+//              own will; the kernel would let it (see lockdown.h).
 // Exit codes   0: the output holds a mesh or a failure · 2: wrong arguments · 3: it cannot lock itself down ·
 // 4: it cannot write.
 #include "renderer/io/import_mesh.h"

@@ -1,8 +1,9 @@
 // lock_down: what heliograph-import gives up before it looks at the first hostile byte.
 //
 // Now     address space, processor time, size of what it writes, open files, processes, core dumps; no new
-//         privileges; not to be traced; first to go when memory is short; dies with the service. This is also
-//         the place of Landlock and of the seccomp list.
+//         privileges; not to be traced; first to go when memory is short; dies with the service.
+// Not     files and the network: a parser that a hostile file has taken over can open, read and send whatever
+//         the service's user can. Landlock and a seccomp list belong here, and are not here yet.
 // Errors  what cannot be had is told as false with the reason: the importer then refuses to read anything.
 #pragma once
 

@@ -182,6 +182,13 @@ TEST_F(RunImport, KillsAChildThatDoesNotEnd)
     }
 }
 
+TEST_F(RunImport, GivesTheChildAllTheTimeThatTheLimitNames)
+{
+    limits_.import_s = 7200;
+    misbehave("echo cpu_s=$5 >&2; exit 7");
+    EXPECT_THAT(run(kTriangle).log, testing::HasSubstr("cpu_s=7200"));
+}
+
 TEST_F(RunImport, StopsWhenAsked)
 {
     misbehave("while :; do :; done");
