@@ -14,10 +14,8 @@ const char* name_of(renderer::StopReason reason)
         return "samples";
     case renderer::StopReason::time:
         return "time";
-    case renderer::StopReason::stopped:
-        return "stopped";
     }
-    return "stopped";
+    return "samples";
 }
 
 Json choices(const std::vector<renderer::ModelChoice>& models)

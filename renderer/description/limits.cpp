@@ -49,7 +49,6 @@ std::span<const LimitEntry> limit_table()
         LimitEntry{"queue_jobs", &Limits::queue_jobs, "", "jobs that wait", 1ull << 31},
         LimitEntry{"wait_s", &Limits::wait_s, "s", "longest Prefer: wait", kDay_s},
         LimitEntry{"waiters", &Limits::waiters, "", "requests that wait at the same time", kMostThreads},
-        LimitEntry{"streams", &Limits::streams, "", "event streams at the same time", kMostThreads},
         LimitEntry{"header_s", &Limits::header_s, "s", "time to send a request's header", kDay_s},
         LimitEntry{"idle_body_s", &Limits::idle_body_s, "s", "silence within a request's body", kDay_s},
         LimitEntry{"retention_s", &Limits::retention_s, "s", "how long results are kept", 100 * 365 * kDay_s},

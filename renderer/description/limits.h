@@ -22,7 +22,6 @@ struct Limits {
     std::uint64_t queue_jobs = 1000;
     std::uint64_t wait_s = 60;
     std::uint64_t waiters = 64;
-    std::uint64_t streams = 64;
     std::uint64_t header_s = 5;
     std::uint64_t idle_body_s = 30;
     std::uint64_t retention_s = 24 * 3600;

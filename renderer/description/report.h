@@ -25,7 +25,7 @@ struct NumericsReport {
     std::string precision;                  // "float" or "double", of the ray kernels
 };
 
-enum class StopReason : std::uint8_t { samples, time, stopped };
+enum class StopReason : std::uint8_t { samples, time };
 
 struct AccuracyReport {
     std::uint32_t samples = 0; // taken in every pixel: the job with `samples` set to this has the same bytes

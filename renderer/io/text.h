@@ -1,4 +1,5 @@
-// Words and numbers of text formats (OBJ, MTL, ASCII PLY and STL), without locale, allocation or exceptions.
+// Words and numbers of text formats (OBJ, MTL, ASCII PLY and STL), without locale or exceptions; what returns a
+// view or a number allocates nothing.
 #pragma once
 
 #include "renderer/math/vec3.h"

@@ -118,7 +118,7 @@ std::vector<Row> option_rows(Draft& draft)
             "--health-port",
             "N",
             "port + 1",
-            "port of /healthz, /readyz and /metrics alone; 0: any free one",
+            "port of /healthz and /readyz alone; 0: any free one",
             take_number(kMostPort, [&draft](std::uint64_t n) { draft.health_port = static_cast<int>(n); })),
         row_of("--data",
                "FOLDER",

@@ -20,8 +20,7 @@ constexpr std::size_t kHealthQueue = 64;
 GuardOptions guard_options(const HttpOptions& options)
 {
     GuardOptions guard;
-    guard.threads =
-        static_cast<std::size_t>(options.limits.waiters + options.limits.streams) + kOrdinaryThreads;
+    guard.threads = static_cast<std::size_t>(options.limits.waiters) + kOrdinaryThreads;
     guard.queue = options.connection_queue;
     guard.stream.head = std::chrono::seconds(options.limits.header_s);
     guard.stream.idle_body = std::chrono::seconds(options.limits.idle_body_s);

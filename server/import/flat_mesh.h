@@ -22,7 +22,8 @@
 
 namespace server {
 
-// Changes whenever the same file may import differently: part of the cache's key and of the flat form's head.
+// Changes whenever the flat form or what the importer makes of a file does: the head of the form has it, so that
+// a service never takes the output of another build's importer.
 constexpr std::uint32_t kImporterVersion = 1;
 
 struct ImportedAsset {

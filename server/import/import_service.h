@@ -3,7 +3,7 @@
 // hostile. Prepared meshes are kept in memory, least recently used first out, by bytes.
 //
 // Key      digest and extension of the main file, digests of every file that it asked for (or that there was
-//          none), importer version, split. Failures that would come again are remembered too; time and memory
+//          none), split. Failures that would come again are remembered too; time and memory
 //          are not such.
 // Bytes    every blob is verified against its digest before what came of it is told or kept: the importer
 //          reads the file itself while this process verifies it.

@@ -220,7 +220,6 @@ TEST(HttpServer, StaysHealthyWhileSlowClientsHoldEveryThread)
 {
     renderer::Limits limits;
     limits.waiters = 1;
-    limits.streams = 0;
     const LiveService service(limits);
     std::vector<std::unique_ptr<RawConnection>> slow;
     for (int i = 0; i < 40; ++i) {
