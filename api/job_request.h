@@ -42,13 +42,12 @@ struct ReadContext {
 // fault).
 std::variant<JobRequest, ProblemDetails> read_job(std::string_view json, const ReadContext& context);
 
-// The job as JSON with every default written out; read_job reads it back to an equal request. Keys are
-// sorted, so this is also the canonical form whose digest names the render (without files, priority, labels,
-// limits).
+// The job as JSON with every default written out and its keys sorted; read_job reads it back to an equal
+// request, under limits that leave room for what the defaults add.
 std::string write_job(const JobRequest& request, bool pretty = true);
 
-// What render_key is the digest of: scene, image, quality, seed, mesh digests (with the digests of `files`,
-// which an MTL or glTF may open), build. Two requests with the same text have the same picture.
+// What render_key is the digest of: scene, image, quality, seed, mesh digests (with the names and digests of
+// `files`, which an MTL or glTF may open), build. Two requests with the same text have the same picture.
 std::string canonical_render_text(const JobRequest& request);
 
 } // namespace api

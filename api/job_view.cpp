@@ -82,8 +82,11 @@ std::string write_job_view(const JobView& view)
 std::string write_job_list(const std::vector<JobView>& views, const std::string& next_cursor)
 {
     Json json{{"jobs", Json::array()}};
-    for (const JobView& view : views)
-        json["jobs"].push_back(job_json(view));
+    for (const JobView& view : views) {
+        Json& job = json["jobs"].emplace_back(job_json(view));
+        if (view.error)
+            job["error"]["errors"] = Json::array(); // its summary tells how many: the job itself has them
+    }
     if (!next_cursor.empty()) json["next_cursor"] = next_cursor;
     return text_of(json);
 }

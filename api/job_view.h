@@ -46,6 +46,7 @@ struct JobView {
 
 // The job object: fields above, and `links` {self, image, report, scene, cancel}.
 std::string write_job_view(const JobView& view);
+// A failed job's list of faults is left out: write_job_view has it.
 std::string write_job_list(const std::vector<JobView>& views, const std::string& next_cursor);
 
 // report.json: accuracy, models, numerics, timing, geometry. `requested`: the request's settings.quality.

@@ -1,6 +1,7 @@
 #include "renderer/render.h"
 
 #include "renderer/ordered_merge.h"
+#include "renderer/plan/budget.h"
 #include "renderer/tile_grid.h"
 #include "renderer/trace.h"
 
@@ -14,6 +15,9 @@ namespace renderer {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// As many units may wait in the merge for each thread, or it would sleep while another one's takes long.
+constexpr std::size_t kUnitsAThread = 4;
 
 double seconds_since(Clock::time_point start)
 {
@@ -75,7 +79,10 @@ public:
         std::stop_token stop,
         const ProgressSink& progress)
         : scene_(scene), plan_(plan), settings_(settings), pool_(pool), stop_(std::move(stop)),
-          film_(region_of(settings.image)), grid_(film_.region, settings.acceleration.tile_px),
+          film_(region_of(settings.image)),
+          grid_(film_.region,
+                tile_side(settings.acceleration.tile_px,
+                          kMergeBytes / sizeof(RgbSum) / (kUnitsAThread * pool.size()))),
           target_(target_of(settings.quality)), teller_(progress, target_, settings.quality.time_s, start_)
     {
     }
@@ -162,12 +169,11 @@ private:
         teller_.tell(samples_done_, samples_complete_, false);
     }
 
-    // Units that may wait for an older one: 32 MiB of sums, and a few for every thread in any case.
+    // Units that may wait for an older one; tiles are small enough that there is room for a few a thread.
     std::size_t window() const
     {
         const std::size_t bytes = grid_.largest_tile_pixels() * sizeof(RgbSum);
-        return std::max(std::size_t{4} * pool_.size(),
-                        std::min((std::size_t{32} << 20) / bytes, std::size_t{4096}));
+        return std::max(kUnitsAThread * pool_.size(), std::min(kMergeBytes / bytes, std::size_t{4096}));
     }
 
     RenderReport report(StopReason reason) const

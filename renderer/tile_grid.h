@@ -12,14 +12,23 @@
 
 namespace renderer {
 
+// A tile larger than 256 pixels a side would only hold memory and let threads idle at the end.
+inline constexpr std::uint32_t kLargestTile = 256;
+
+// The side asked for, or the largest one within kLargestTile and `most_pixels`; at least 1.
+inline std::uint32_t tile_side(std::uint32_t asked, std::size_t most_pixels)
+{
+    std::uint32_t side = std::clamp(asked, 1u, kLargestTile);
+    while (side > 1 && std::size_t{side} * side > most_pixels)
+        --side;
+    return side;
+}
+
 class TileGrid {
 public:
-    // A tile larger than 256 pixels a side would only hold memory and let threads idle at the end.
-    static constexpr std::uint32_t kLargestTile = 256;
-
-    TileGrid(PixelRect region, std::uint32_t tile_px)
-        : region_(region), side_(std::clamp(tile_px, 1u, kLargestTile)),
-          columns_((region.width + side_ - 1) / side_), rows_((region.height + side_ - 1) / side_)
+    TileGrid(PixelRect region, std::uint32_t side)
+        : region_(region), side_(side), columns_((region.width + side_ - 1) / side_),
+          rows_((region.height + side_ - 1) / side_)
     {
     }
 

@@ -32,9 +32,10 @@ std::vector<Problem> FaultList::take()
     std::stable_sort(faults_.begin(), faults_.end(), [](const Problem& a, const Problem& b) {
         return a.pointer == b.pointer ? a.code < b.code : comes_before(a.pointer, b.pointer);
     });
-    if (uncounted_ > 0)
-        faults_.push_back(
-            {"", "more_faults", std::to_string(uncounted_) + " more faults are not listed here"});
+    if (uncounted_ > 0) {
+        renderer::Fault more = renderer::more_faults(uncounted_);
+        faults_.push_back({std::move(more.pointer), std::move(more.code), std::move(more.detail)});
+    }
     uncounted_ = 0;
     return std::exchange(faults_, {});
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "api/problem.h"
+#include "renderer/description/fault_list.h"
 
 #include <cstddef>
 #include <string>
@@ -10,8 +11,7 @@
 
 namespace api {
 
-// Faults that one answer lists; the others are counted.
-inline constexpr std::size_t kMostFaults = 1000;
+using renderer::kMostFaults;
 
 class FaultList {
 public:

@@ -28,4 +28,12 @@ std::uint64_t Mesh::size_bytes() const
     return sum;
 }
 
+std::map<std::string_view, const MeshPart*> Mesh::parts_by_name() const
+{
+    std::map<std::string_view, const MeshPart*> named;
+    for (const MeshPart& part : parts)
+        named.emplace(part.name, &part);
+    return named;
+}
+
 } // namespace renderer

@@ -10,7 +10,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace renderer {
@@ -44,6 +46,8 @@ struct Mesh {
 
     Bounds3f bounds() const;          // of the vertices that triangles use
     std::uint64_t size_bytes() const; // of the arrays
+    // Of several parts of one name, the first. Valid as long as `parts` is.
+    std::map<std::string_view, const MeshPart*> parts_by_name() const;
 };
 
 } // namespace renderer

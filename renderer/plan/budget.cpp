@@ -1,22 +1,38 @@
 #include "renderer/plan/budget.h"
 
-#include <limits>
+#include <set>
+#include <string>
+#include <tuple>
 #include <variant>
 
 namespace renderer {
 
 namespace {
 
-constexpr std::uint64_t kFilmBytesPerPixel =
-    3 * 8 + 3 * 4 + 3 + 3 + 3; // sums, mean, 8 bit, and the encoder's two copies
-constexpr std::uint64_t kBytesPerVertex = 12 + 12 + 8;
-constexpr std::uint64_t kBytesPerTriangle = 12 + 2 + 128; // indices, material, and BVH nodes with leaves
+// Sums, mean, 8 bit; of the encoder the filtered rows, the deflated ones in a buffer that doubles, the file and
+// its copy.
+constexpr std::uint64_t kFilmBytesPerPixel = 3 * 8 + 3 * 4 + 3 + (3 + 9 + 3 + 3);
+constexpr std::uint64_t kMeshBytesPerVertex = 12 + 12 + 8;
+constexpr std::uint64_t kMeshBytesPerTriangle = 12 + 2; // indices, material
+constexpr std::uint64_t kTreeBytesPerTriangle = 128;    // nodes and leaves
 constexpr std::uint64_t kBytesPerObject = 512;
 
-std::uint64_t saturating_product(std::uint64_t a, std::uint64_t b)
+// Parts that name the same triangles share a tree; one that names all has the mesh's own.
+std::uint64_t triangles_of_parts(const SceneDescription& scene, std::span<const MeshFacts> meshes)
 {
-    constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
-    return b != 0 && a > kMost / b ? kMost : a * b;
+    std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> runs;
+    std::uint64_t triangles = 0;
+    for (const ObjectDescription& object : scene.objects) {
+        const auto* const shape = std::get_if<MeshShape>(&object.shape);
+        if (shape == nullptr || shape->part.empty() || shape->mesh >= meshes.size()) continue;
+        const MeshFacts& facts = meshes[shape->mesh];
+        const auto part = facts.parts.find(shape->part);
+        if (part == facts.parts.end() || part->second.triangle_count == facts.triangles) continue;
+        const PartFacts& run = part->second;
+        if (runs.emplace(shape->mesh, run.first_triangle, run.triangle_count).second)
+            triangles += run.triangle_count;
+    }
+    return triangles;
 }
 
 std::string refused(std::uint64_t value, const std::string& what, const char* limit_name, std::uint64_t limit)
@@ -27,6 +43,13 @@ std::string refused(std::uint64_t value, const std::string& what, const char* li
 
 } // namespace
 
+void add_mesh(Budget& budget, const MeshFacts& mesh)
+{
+    budget.triangles += mesh.triangles;
+    budget.mesh_bytes += mesh.triangles * (kMeshBytesPerTriangle + kTreeBytesPerTriangle) +
+                         mesh.vertices * kMeshBytesPerVertex;
+}
+
 Budget
 predict(const SceneDescription& scene, std::span<const MeshFacts> meshes, const RenderSettings& settings)
 {
@@ -34,43 +57,32 @@ predict(const SceneDescription& scene, std::span<const MeshFacts> meshes, const 
     const ImageSettings& image = settings.image;
     b.pixels = image.region ? std::uint64_t{image.region->width} * image.region->height
                             : std::uint64_t{image.width_px} * image.height_px;
-    b.film_bytes = b.pixels * kFilmBytesPerPixel;
-    b.mesh_bytes = scene.objects.size() * kBytesPerObject;
-    for (const MeshFacts& facts : meshes) {
-        b.triangles += facts.triangles;
-        b.mesh_bytes += facts.triangles * kBytesPerTriangle + facts.vertices * kBytesPerVertex;
-    }
-    const QualitySettings& quality = settings.quality;
-    const std::uint64_t samples = quality.samples  ? *quality.samples
-                                  : quality.time_s ? quality.max_samples
-                                                   : kDefaultSamples;
-    b.camera_rays = b.pixels * samples;
-    const bool sky = scene.environment && !std::holds_alternative<NoEnvironment>(*scene.environment);
-    b.shadow_rays = saturating_product(b.camera_rays, scene.lights.size() + (sky ? 1u : 0u));
+    b.film_bytes = b.pixels * kFilmBytesPerPixel + kMergeBytes;
+    b.mesh_bytes =
+        scene.objects.size() * kBytesPerObject + triangles_of_parts(scene, meshes) * kTreeBytesPerTriangle;
+    for (const MeshFacts& facts : meshes)
+        add_mesh(b, facts);
     return b;
 }
 
-std::vector<Fault> check_budget(const Budget& budget, const Limits& limits)
+void check_budget(const Budget& budget, const Limits& limits, FaultList& faults)
 {
-    std::vector<Fault> faults;
     if (budget.pixels > limits.image_pixels)
-        faults.push_back(
+        faults.add(
             {"/image", "over_limit", refused(budget.pixels, "pixels", "image_pixels", limits.image_pixels)});
     if (budget.triangles > limits.triangles)
-        faults.push_back({"/scene/objects",
-                          "over_limit",
-                          refused(budget.triangles, "triangles", "triangles", limits.triangles)});
+        faults.add({"/scene/objects",
+                    "over_limit",
+                    refused(budget.triangles, "triangles", "triangles", limits.triangles)});
     const std::uint64_t memory = budget.film_bytes + budget.mesh_bytes;
     if (memory > limits.render_memory_bytes)
-        faults.push_back(
-            {budget.film_bytes > budget.mesh_bytes ? "/image" : "/scene/objects",
-             "over_limit",
-             refused(memory,
-                     "bytes of memory (" + std::to_string(budget.film_bytes) + " for the picture, " +
-                         std::to_string(budget.mesh_bytes) + " for meshes)",
-                     "render_memory_bytes",
-                     limits.render_memory_bytes)});
-    return faults;
+        faults.add({budget.film_bytes > budget.mesh_bytes ? "/image" : "/scene/objects",
+                    "over_limit",
+                    refused(memory,
+                            "bytes of memory (" + std::to_string(budget.film_bytes) + " for the picture, " +
+                                std::to_string(budget.mesh_bytes) + " for meshes)",
+                            "render_memory_bytes",
+                            limits.render_memory_bytes)});
 }
 
 } // namespace renderer

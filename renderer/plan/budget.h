@@ -1,9 +1,12 @@
-// budget: what a render will cost, predicted before anything is allocated.
+// budget: what a render will hold in memory, estimated before its film and the trees of its parts are made.
 //
-// Units   bytes and rays; upper bounds.
+// Units   bytes; an estimate from the counts, not a bound: trees differ in their leaves, allocators in what
+//         they keep.
+// Usage   predict() knows the whole; a caller that gets its meshes one after the other adds each to the budget
+//         of the scene without meshes, and so need not hold more than the limits allow.
 #pragma once
 
-#include "renderer/description/fault.h"
+#include "renderer/description/fault_list.h"
 #include "renderer/description/limits.h"
 #include "renderer/description/scene_description.h"
 #include "renderer/description/settings.h"
@@ -11,23 +14,26 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace renderer {
+
+// Results that wait to be merged in their order: render() keeps below this, whatever threads and tiles.
+inline constexpr std::uint64_t kMergeBytes = 32u << 20;
 
 struct Budget {
     std::uint64_t pixels = 0;     // of the region that is rendered
     std::uint64_t triangles = 0;  // each mesh counted once
-    std::uint64_t film_bytes = 0; // sums, the finished picture, its developed form
-    std::uint64_t mesh_bytes = 0; // vertices, indices, BVHs
-    std::uint64_t camera_rays = 0;
-    std::uint64_t shadow_rays = 0;
+    std::uint64_t film_bytes = 0; // sums, results on their way to them, the finished picture, its PNG
+    std::uint64_t mesh_bytes = 0; // vertices, indices, a BVH for each mesh and each different part
 };
 
 Budget
 predict(const SceneDescription& scene, std::span<const MeshFacts> meshes, const RenderSettings& settings);
 
+// One mesh with its tree, without those of its parts.
+void add_mesh(Budget& budget, const MeshFacts& mesh);
+
 // One fault for each limit that the budget passes, with the number and the limit.
-std::vector<Fault> check_budget(const Budget& budget, const Limits& limits);
+void check_budget(const Budget& budget, const Limits& limits, FaultList& faults);
 
 } // namespace renderer

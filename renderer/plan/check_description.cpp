@@ -4,6 +4,8 @@
 #include "renderer/plan/world_bounds.h"
 
 #include <cmath>
+#include <map>
+#include <string>
 #include <variant>
 
 namespace renderer {
@@ -23,12 +25,15 @@ bool is_finite(Rgb c)
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }
 
-std::string name_list(const std::vector<MeshPart>& parts)
+std::string name_list(const std::map<std::string, PartFacts>& parts)
 {
     constexpr std::size_t kMost = 20;
     std::string list;
-    for (std::size_t i = 0; i < parts.size() && i < kMost; ++i)
-        list += (i == 0 ? "\"" : ", \"") + parts[i].name + "\"";
+    std::size_t told = 0;
+    for (const auto& [name, facts] : parts) {
+        if (told++ == kMost) break;
+        list += (list.empty() ? "\"" : ", \"") + name + "\"";
+    }
     if (parts.size() > kMost) list += ", and " + std::to_string(parts.size() - kMost) + " more";
     return list;
 }
@@ -51,24 +56,24 @@ bool has_size(const Shape& shape)
 
 class Checker {
 public:
-    Checker(const SceneDescription& scene, std::span<const MeshFacts> meshes) : scene_(scene), meshes_(meshes)
+    Checker(const SceneDescription& scene, std::span<const MeshFacts> meshes, FaultList& faults)
+        : scene_(scene), meshes_(meshes), faults_(faults)
     {
     }
 
-    std::vector<Fault> run()
+    void run()
     {
         if (scene_.camera) check(*scene_.camera);
         for (std::size_t i = 0; i < scene_.objects.size(); ++i)
             check(scene_.objects[i], "/scene/objects/" + std::to_string(i));
         for (std::size_t i = 0; i < scene_.lights.size(); ++i)
             check(scene_.lights[i], "/scene/lights/" + std::to_string(i));
-        return std::move(faults_);
     }
 
 private:
     void fault(std::string pointer, std::string code, std::string detail)
     {
-        faults_.push_back({std::move(pointer), std::move(code), std::move(detail)});
+        faults_.add({std::move(pointer), std::move(code), std::move(detail)});
     }
 
     void check(const CameraDescription& camera)
@@ -95,12 +100,11 @@ private:
         if (shape.mesh >= meshes_.size()) return fault(at + "/mesh", "missing_asset", "no such mesh");
         if (shape.part.empty()) return;
         const MeshFacts& facts = meshes_[shape.mesh];
-        for (const MeshPart& part : facts.parts)
-            if (part.name == shape.part) {
-                if (part.triangle_count == 0)
-                    fault(at + "/part", "no_triangles", "the part \"" + shape.part + "\" has no triangles");
-                return;
-            }
+        if (const auto part = facts.parts.find(shape.part); part != facts.parts.end()) {
+            if (part->second.triangle_count == 0)
+                fault(at + "/part", "no_triangles", "the part \"" + shape.part + "\" has no triangles");
+            return;
+        }
         fault(at + "/part",
               "unknown_part",
               facts.parts.empty() ? "the mesh has no named parts: leave `part` out"
@@ -109,7 +113,7 @@ private:
 
     void check(const ObjectDescription& object, const std::string& at)
     {
-        const std::size_t before = faults_.size();
+        const std::size_t before = faults_.count();
         if (const auto* const mesh = std::get_if<MeshShape>(&object.shape)) check_mesh(*mesh, at);
         if (object.material && *object.material >= scene_.materials.size())
             fault(at + "/material", "unknown_material", "no such material");
@@ -120,7 +124,7 @@ private:
                 at + "/transform",
                 "singular_transform",
                 "the transform flattens the object (its determinant is 0): scale by something other than 0");
-        if (faults_.size() != before) return;
+        if (faults_.count() != before) return;
         for (const Vec3d& corner : world_corners(object, meshes_))
             if (!is_finite(corner) || max_component(abs(corner)) > kLargestCoordinate)
                 return fault(at + "/transform",
@@ -155,41 +159,37 @@ private:
 
     const SceneDescription& scene_;
     std::span<const MeshFacts> meshes_;
-    std::vector<Fault> faults_;
+    FaultList& faults_;
 };
 
 } // namespace
 
-std::vector<Fault> check_description(const SceneDescription& scene, std::span<const MeshFacts> meshes)
+void check_description(const SceneDescription& scene, std::span<const MeshFacts> meshes, FaultList& faults)
 {
-    return Checker(scene, meshes).run();
+    Checker(scene, meshes, faults).run();
 }
 
-std::vector<Fault> check_settings(const RenderSettings& settings)
+void check_settings(const RenderSettings& settings, FaultList& faults)
 {
-    std::vector<Fault> faults;
     const ImageSettings& image = settings.image;
-    if (image.width_px == 0)
-        faults.push_back({"/image/width", "out_of_range", "0 is not a width: at least 1"});
-    if (image.height_px == 0)
-        faults.push_back({"/image/height", "out_of_range", "0 is not a height: at least 1"});
+    if (image.width_px == 0) faults.add({"/image/width", "out_of_range", "0 is not a width: at least 1"});
+    if (image.height_px == 0) faults.add({"/image/height", "out_of_range", "0 is not a height: at least 1"});
     if (image.region) {
         const PixelRect& r = *image.region;
         const bool inside = r.width > 0 && r.height > 0 && std::uint64_t{r.x} + r.width <= image.width_px &&
                             std::uint64_t{r.y} + r.height <= image.height_px;
         if (!inside)
-            faults.push_back({"/image/region",
-                              "out_of_range",
-                              "the region must have at least one pixel and lie within the picture of " +
-                                  std::to_string(image.width_px) + " x " + std::to_string(image.height_px)});
+            faults.add({"/image/region",
+                        "out_of_range",
+                        "the region must have at least one pixel and lie within the picture of " +
+                            std::to_string(image.width_px) + " x " + std::to_string(image.height_px)});
     }
     if (settings.quality.samples && *settings.quality.samples == 0)
-        faults.push_back({"/quality/samples", "out_of_range", "0 samples make no picture: at least 1"});
+        faults.add({"/quality/samples", "out_of_range", "0 samples make no picture: at least 1"});
     if (settings.quality.time_s && !(*settings.quality.time_s > 0))
-        faults.push_back({"/quality/time_s", "out_of_range", "a time must be above 0 seconds"});
+        faults.add({"/quality/time_s", "out_of_range", "a time must be above 0 seconds"});
     if (settings.acceleration.tile_px == 0)
-        faults.push_back({"/acceleration/tile", "out_of_range", "0 is not a tile size: at least 1"});
-    return faults;
+        faults.add({"/acceleration/tile", "out_of_range", "0 is not a tile size: at least 1"});
 }
 
 } // namespace renderer

@@ -1,21 +1,21 @@
 // check_description: every fault that can be told from a description, its meshes' facts and the settings, all
 // at once.
 //
-// What passes can be prepared and rendered: every index in range, every number finite, every transform
-// invertible, camera and lights with a direction.
+// What passes can be prepared and rendered: every index in range, every place finite, every transform
+// invertible, camera and lights with a direction, lights of finite brightness. Materials and the environment
+// are taken as they are: whatever they say can be rendered, and samples that are not finite are counted.
 #pragma once
 
-#include "renderer/description/fault.h"
+#include "renderer/description/fault_list.h"
 #include "renderer/description/scene_description.h"
 #include "renderer/description/settings.h"
 #include "renderer/plan/plan.h"
 
 #include <span>
-#include <vector>
 
 namespace renderer {
 
-std::vector<Fault> check_description(const SceneDescription& scene, std::span<const MeshFacts> meshes);
-std::vector<Fault> check_settings(const RenderSettings& settings);
+void check_description(const SceneDescription& scene, std::span<const MeshFacts> meshes, FaultList& faults);
+void check_settings(const RenderSettings& settings, FaultList& faults);
 
 } // namespace renderer

@@ -9,6 +9,7 @@ namespace {
 
 // What stands in a scene, counted.
 struct Census {
+    std::size_t objects = 0; // in all
     std::size_t mesh_objects = 0, rectangles = 0, disks = 0, boxes = 0, spheres = 0;
     std::size_t smooth = 0, flat_with_normals = 0, textured_meshes = 0;
     std::size_t diffuse = 0, phong_classic = 0, phong_normalized = 0, default_material = 0;
@@ -39,10 +40,7 @@ void count_object(Census& c,
     if (const auto* const mesh = std::get_if<MeshShape>(&object.shape)) {
         ++c.mesh_objects;
         facts = &meshes[mesh->mesh];
-        if (shades_smoothly(object, meshes))
-            ++c.smooth;
-        else if (facts->has_normals)
-            ++c.flat_with_normals;
+        if (facts->has_normals) ++(object.shading == Shading::flat ? c.flat_with_normals : c.smooth);
     }
     c.rectangles += is_a<RectangleShape>(object.shape);
     c.disks += is_a<DiskShape>(object.shape);
@@ -60,6 +58,7 @@ void count_object(Census& c,
 Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshes)
 {
     Census c;
+    c.objects = scene.objects.size();
     for (const ObjectDescription& object : scene.objects)
         count_object(c, object, scene, meshes);
     for (const Light& light : scene.lights) {
@@ -78,7 +77,7 @@ std::string of(std::size_t count, const char* what)
 
 class Explainer {
 public:
-    Explainer(const Census& census, const Plan& plan) : c_(census), plan_(plan) {}
+    explicit Explainer(const Census& census) : c_(census) {}
 
     ModelReport run(const std::vector<ModelChoice>& assumed)
     {
@@ -114,10 +113,11 @@ private:
                "flat_shapes",
                of(c_.rectangles + c_.disks, "rectangle or disk object"));
         use_if(c_.spheres, "exact_spheres", of(c_.spheres, "sphere") + ", intersected as spheres");
-        if (plan_.two_levels)
+        if (c_.objects > 1)
             use("two_level_bvh", "objects are placed over their meshes' own trees, so instances share one");
         else
-            skip("two_level_bvh", "a single object stands where its file put it: its own tree is enough");
+            skip("two_level_bvh",
+                 c_.objects == 1 ? "a single object is asked directly" : "there is no object to be found");
     }
 
     void shading()
@@ -165,22 +165,15 @@ private:
     }
 
     const Census& c_;
-    const Plan& plan_;
     ModelReport out_;
 };
 
 } // namespace
 
-bool shades_smoothly(const ObjectDescription& object, std::span<const MeshFacts> meshes)
-{
-    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
-    return mesh != nullptr && meshes[mesh->mesh].has_normals && object.shading != Shading::flat;
-}
-
-ModelReport explain(const AssumedScene& scene, std::span<const MeshFacts> meshes, const Plan& plan)
+ModelReport explain(const AssumedScene& scene, std::span<const MeshFacts> meshes)
 {
     const Census census = census_of(scene.description, meshes);
-    return Explainer(census, plan).run(scene.assumed);
+    return Explainer(census).run(scene.assumed);
 }
 
 } // namespace renderer

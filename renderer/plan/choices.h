@@ -8,9 +8,6 @@
 
 namespace renderer {
 
-// Does this object interpolate normals: its mesh has them and it is not asked to be flat?
-bool shades_smoothly(const ObjectDescription& object, std::span<const MeshFacts> meshes);
-
-ModelReport explain(const AssumedScene& scene, std::span<const MeshFacts> meshes, const Plan& plan);
+ModelReport explain(const AssumedScene& scene, std::span<const MeshFacts> meshes);
 
 } // namespace renderer

@@ -29,9 +29,9 @@ MeshFacts facts_of(const Mesh& mesh)
         facts.has_textures = facts.has_textures || !material.textures.empty();
         facts.has_specular = facts.has_specular || (!is_black(material.specular) && material.shininess > 0);
     }
-    facts.parts = mesh.parts;
-    for (const MeshPart& part : mesh.parts)
-        facts.part_bounds.push_back(part_bounds(mesh, part));
+    for (const auto& [name, part] : mesh.parts_by_name())
+        facts.parts.emplace(name,
+                            PartFacts{part->first_triangle, part->triangle_count, part_bounds(mesh, *part)});
     return facts;
 }
 

@@ -1,7 +1,7 @@
 // Plan: what a scene needs, decided once from the description and the meshes' facts, and explained.
 //
-// The only place where "model only what the scene requires" is decided. It also predicts cost, so that a job
-// over a limit is refused with the number before anything is allocated.
+// The only place where "model only what the scene requires" is decided. It also estimates the memory (budget.h),
+// so that a job over a limit is refused with the number before its film and the trees of its parts are made.
 #pragma once
 
 #include "renderer/description/fault.h"
@@ -12,11 +12,19 @@
 #include "renderer/geometry/mesh.h"
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
 namespace renderer {
+
+// A named part of a mesh: its run of triangles, and the box around them.
+struct PartFacts {
+    std::uint32_t first_triangle = 0, triangle_count = 0;
+    Bounds3f bounds{};
+};
 
 // What the plan must know of a mesh; cheap to take from an imported one.
 struct MeshFacts {
@@ -26,9 +34,8 @@ struct MeshFacts {
     bool has_normals = false;
     bool has_materials = false;
     bool has_textures = false;
-    bool has_specular = false; // a material of its own shines: it is shaded as normalised Phong
-    std::vector<MeshPart> parts;
-    std::vector<Bounds3f> part_bounds; // one a part
+    bool has_specular = false;              // a material of its own shines: it is shaded as normalised Phong
+    std::map<std::string, PartFacts> parts; // by name; of several of one name, the first
 };
 MeshFacts facts_of(const Mesh& mesh);
 
@@ -43,11 +50,6 @@ AssumedScene assume_defaults(SceneDescription description, std::span<const MeshF
 struct Plan {
     TransportType transport = TransportType::direct;
     ModelReport models;
-    bool keep_normals = false;      // some object shades smoothly
-    bool two_levels = true;         // false: one untransformed mesh needs no top-level BVH
-    std::uint64_t camera_rays = 0;  // predicted, for `samples` settings
-    std::uint64_t shadow_rays = 0;  // upper bound
-    std::uint64_t memory_bytes = 0; // film, pictures, meshes, BVHs: upper bound
 };
 
 // Either a plan or every fault: a part that no mesh has, a singular transform, a budget exceeded (with the

@@ -13,9 +13,8 @@ Bounds3d around_origin(Vec3d half)
 
 const Bounds3f& bounds_of_part(const MeshFacts& facts, const std::string& part)
 {
-    for (std::size_t i = 0; i < facts.part_bounds.size() && i < facts.parts.size(); ++i)
-        if (!part.empty() && facts.parts[i].name == part) return facts.part_bounds[i];
-    return facts.bounds;
+    const auto named = part.empty() ? facts.parts.end() : facts.parts.find(part);
+    return named == facts.parts.end() ? facts.bounds : named->second.bounds;
 }
 
 struct OwnBounds {

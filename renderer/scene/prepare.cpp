@@ -8,7 +8,8 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -35,18 +36,24 @@ Material from_mesh(const MeshMaterial& m)
 class Preparation {
 public:
     Preparation(const SceneDescription& scene,
-                const Plan& plan,
                 std::span<const SharedMesh> meshes,
                 BvhSplit split,
-                ThreadPool& pool)
-        : scene_(scene), keep_normals_(plan.keep_normals), meshes_(meshes), split_(split), pool_(pool)
+                ThreadPool& pool,
+                const std::stop_token& stop)
+        : scene_(scene), meshes_(meshes), split_(split), pool_(pool), stop_(stop)
     {
         for (const NamedMaterial& material : scene.materials)
             bsdfs.push_back(make_bsdf(material.material));
         default_bsdf_ = next_bsdf();
         bsdfs.push_back(make_bsdf(DiffuseMaterial{}));
-        for (const ObjectDescription& object : scene.objects)
-            add(object);
+    }
+
+    // Every object of the scene; false if `stop` was requested.
+    bool run()
+    {
+        for (const ObjectDescription& object : scene_.objects)
+            if (stop_.stop_requested() || !add(object)) return false;
+        return true;
     }
 
     std::vector<Bsdf> bsdfs;
@@ -69,16 +76,17 @@ private:
         numerics.degenerate_triangles += degenerate_triangles(*mesh);
     }
 
-    void add(const ObjectDescription& object)
+    bool add(const ObjectDescription& object)
     {
-        const auto [shape, own] = geometry_of(object.shape);
+        const auto found = geometry_of(object.shape);
+        if (!found) return false;
+        const auto [shape, own] = *found;
         const auto instance = Instance::place(shape, placement(object), object.visible_to_camera);
         if (!instance)
             throw std::invalid_argument("prepare: an object's transform is singular; make_plan refuses it");
         instances.push_back(*instance);
         Scene::Parts::Look look;
-        const bool smooth = keep_normals_ && object.shading != Shading::flat;
-        if (smooth && own != nullptr && !own->normals.empty()) look.normals_of = own;
+        if (object.shading != Shading::flat && own != nullptr && !own->normals.empty()) look.normals_of = own;
         if (object.material) {
             look.first_bsdf = *object.material;
         } else if (own != nullptr && !own->materials.empty()) {
@@ -89,21 +97,27 @@ private:
         }
         looks.push_back(look);
         ++geometry.instances;
+        return true;
     }
 
+    using Found = std::pair<InstanceGeometry, const Mesh*>;
+
     // The shape for rays, and the user's mesh behind it (not our own box or rectangle, which are flat).
-    std::pair<InstanceGeometry, const Mesh*> geometry_of(const Shape& shape)
+    // Nothing if `stop` was requested.
+    std::optional<Found> geometry_of(const Shape& shape)
     {
         if (const auto* const sphere = std::get_if<SphereShape>(&shape))
-            return {Sphere{sphere->radius_m}, nullptr};
-        if (const auto* const disk = std::get_if<DiskShape>(&shape)) return {Disk{disk->radius_m}, nullptr};
-        if (std::holds_alternative<BoxShape>(shape)) return {unit_shape(box_, unit_box), nullptr};
+            return Found{Sphere{sphere->radius_m}, nullptr};
+        if (const auto* const disk = std::get_if<DiskShape>(&shape))
+            return Found{Disk{disk->radius_m}, nullptr};
+        if (std::holds_alternative<BoxShape>(shape)) return Found{unit_shape(box_, unit_box), nullptr};
         if (std::holds_alternative<RectangleShape>(shape))
-            return {unit_shape(rectangle_, unit_rectangle), nullptr};
+            return Found{unit_shape(rectangle_, unit_rectangle), nullptr};
         const auto& mesh = std::get<MeshShape>(shape);
-        const SharedMesh& prepared = mesh.part.empty() ? meshes_[mesh.mesh] : part(mesh);
+        const SharedMesh prepared = mesh.part.empty() ? meshes_[mesh.mesh] : part(mesh);
+        if (!prepared) return std::nullopt;
         hold(prepared);
-        return {rays_of(*prepared), &mesh_of(*prepared)};
+        return Found{rays_of(*prepared), &mesh_of(*prepared)};
     }
 
     static MeshGeometry rays_of(const PreparedMesh& mesh) { return {&mesh_of(mesh), &bvh_of(mesh)}; }
@@ -115,16 +129,20 @@ private:
         return rays_of(*shared);
     }
 
-    const SharedMesh& part(const MeshShape& shape)
+    // Parts that name the same triangles share a tree; one that names all has the mesh's own.
+    SharedMesh part(const MeshShape& shape)
     {
-        SharedMesh& shared = parts_[{shape.mesh, shape.part}];
-        if (shared) return shared;
         const Mesh& whole = mesh_of(*meshes_[shape.mesh]);
-        const auto found = std::find_if(
-            whole.parts.begin(), whole.parts.end(), [&](const MeshPart& p) { return p.name == shape.part; });
-        if (found == whole.parts.end())
+        auto [named, is_new] = named_parts_.try_emplace(shape.mesh);
+        if (is_new) named->second = whole.parts_by_name();
+        const auto found = named->second.find(shape.part);
+        if (found == named->second.end())
             throw std::invalid_argument("prepare: a mesh has no such part; make_plan refuses it");
-        return shared = prepare_part(meshes_[shape.mesh], *found, split_, pool_);
+        const MeshPart& run = *found->second;
+        if (run.triangle_count == whole.triangles.size()) return meshes_[shape.mesh];
+        SharedMesh& shared = parts_[{shape.mesh, run.first_triangle, run.triangle_count}];
+        if (!shared) shared = prepare_part(meshes_[shape.mesh], run, split_, pool_, stop_);
+        return shared;
     }
 
     std::uint32_t own_materials(const Mesh& mesh)
@@ -137,14 +155,16 @@ private:
     }
 
     const SceneDescription& scene_;
-    bool keep_normals_;
     std::span<const SharedMesh> meshes_;
     BvhSplit split_;
     ThreadPool& pool_;
+    const std::stop_token& stop_;
     SharedMesh box_, rectangle_;
     std::set<const PreparedMesh*> seen_;
     std::set<const Mesh*> counted_;
-    std::map<std::pair<std::uint32_t, std::string>, SharedMesh> parts_;
+    std::map<std::uint32_t, std::map<std::string_view, const MeshPart*>> named_parts_; // by mesh
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, SharedMesh>
+        parts_; // mesh, first, count
     std::map<const Mesh*, std::uint32_t> first_own_;
     std::uint32_t default_bsdf_ = 0;
 };
@@ -168,15 +188,17 @@ Rgb environment_of(const SceneDescription& scene)
 } // namespace
 
 std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
-                                     const Plan& plan,
+                                     const Plan&,
                                      std::span<const std::shared_ptr<const PreparedMesh>> meshes,
                                      const RenderSettings& settings,
-                                     ThreadPool& pool)
+                                     ThreadPool& pool,
+                                     const std::stop_token& stop)
 {
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     const BvhSplit split = settings.acceleration.split;
-    Preparation made(description, plan, meshes, split, pool);
+    Preparation made(description, meshes, split, pool, stop);
+    if (!made.run()) return nullptr;
     std::vector<PreparedLight> lights;
     for (const Light& light : description.lights)
         lights.push_back(prepare_light(light));

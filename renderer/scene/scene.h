@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace renderer {
@@ -70,11 +71,14 @@ private:
     Parts parts_;
 };
 
-// meshes[i] is the prepared form of description.meshes[i].
+// meshes[i] is the prepared form of description.meshes[i]; `plan` is make_plan's for this very scene, so that
+// nothing is checked again. Builds the trees of the parts that objects name: nullptr only if `stop` was
+// requested meanwhile.
 std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      const Plan& plan,
                                      std::span<const std::shared_ptr<const PreparedMesh>> meshes,
                                      const RenderSettings& settings,
-                                     ThreadPool& pool);
+                                     ThreadPool& pool,
+                                     const std::stop_token& stop = {});
 
 } // namespace renderer

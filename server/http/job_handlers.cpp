@@ -179,7 +179,7 @@ void JobHandlers::cancel(Exchange& exchange)
 void JobHandlers::remove(Exchange& exchange)
 {
     const std::string& id = exchange.path.at("id");
-    if (!jobs_.remove(id)) return reply_problem(exchange, no_such_job(id));
+    if (auto problem = jobs_.remove(id)) return reply_problem(exchange, std::move(*problem));
     exchange.response.status = 204;
 }
 

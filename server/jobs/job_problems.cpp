@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
+#include <utility>
 #include <variant>
 
 namespace server {
@@ -71,6 +73,14 @@ api::ProblemDetails still_running_problem(const JobId& id)
     return problem(504,
                    "still_running",
                    "job " + id + " is not finished; ask again, or wait with Prefer: wait=60",
+                   true);
+}
+
+api::ProblemDetails still_ending_problem(const JobId& id)
+{
+    return problem(503,
+                   "still_ending",
+                   "job " + id + " has ended or was canceled, but is not yet put away; delete it again",
                    true);
 }
 
@@ -160,29 +170,34 @@ api::ProblemDetails internal_problem(const JobId& id)
                    true);
 }
 
-api::ProblemDetails faults_problem(const std::vector<renderer::Fault>& faults)
+api::ProblemDetails faults_problem(std::vector<renderer::Fault> faults)
 {
     const bool over_limit = std::all_of(faults.begin(), faults.end(), [](const renderer::Fault& fault) {
         return fault.code == "over_limit";
     });
     std::vector<api::Problem> errors;
     errors.reserve(faults.size());
-    for (const renderer::Fault& fault : faults)
-        errors.push_back({fault.pointer, fault.code, fault.detail});
+    for (renderer::Fault& fault : faults)
+        errors.push_back({std::move(fault.pointer), std::move(fault.code), std::move(fault.detail)});
     return api::problem_from_faults(422, over_limit ? "over_limit" : "invalid_scene", std::move(errors));
 }
 
-std::vector<renderer::Fault>
-faults_of(const ImportFailure& failure, const renderer::SceneDescription& scene, std::uint32_t mesh)
+void add_faults(const FailedMeshes& failed,
+                const renderer::SceneDescription& scene,
+                renderer::FaultList& faults)
 {
-    std::vector<renderer::Fault> faults;
+    if (failed.empty()) return;
+    std::set<std::uint32_t> told;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         const auto* shape = std::get_if<renderer::MeshShape>(&scene.objects[i].shape);
-        if (shape != nullptr && shape->mesh == mesh)
-            faults.push_back({"/scene/objects/" + std::to_string(i) + "/mesh", failure.code, failure.detail});
+        const auto failure = shape != nullptr ? failed.find(shape->mesh) : failed.end();
+        if (failure == failed.end()) continue;
+        faults.add(
+            {"/scene/objects/" + std::to_string(i) + "/mesh", failure->second.code, failure->second.detail});
+        told.insert(failure->first);
     }
-    if (faults.empty()) faults.push_back({"/files", failure.code, failure.detail}); // named, but by no object
-    return faults;
+    for (const auto& [mesh, failure] : failed) // named, but by no object
+        if (!told.contains(mesh)) faults.add({"/files", failure.code, failure.detail});
 }
 
 } // namespace server

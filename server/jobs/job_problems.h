@@ -2,12 +2,13 @@
 #pragma once
 
 #include "api/problem.h"
-#include "renderer/description/fault.h"
+#include "renderer/description/fault_list.h"
 #include "renderer/description/scene_description.h"
 #include "server/import/import_service.h"
 #include "server/store/store.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ api::ProblemDetails key_reused_problem();
 api::ProblemDetails bad_cursor_problem();
 api::ProblemDetails not_found_problem(const JobId& id);
 api::ProblemDetails still_running_problem(const JobId& id);
+api::ProblemDetails still_ending_problem(const JobId& id); // canceled, but its worker is not done with it
 api::ProblemDetails render_failed_problem(const JobId& id,
                                           const api::ProblemDetails* why); // nullptr: canceled
 api::ProblemDetails expired_problem(const JobId& id);
@@ -33,11 +35,13 @@ api::ProblemDetails time_limit_problem(double limit_s);
 api::ProblemDetails non_finite_problem(std::uint64_t samples);
 api::ProblemDetails too_many_attempts_problem(const JobId& id, std::uint32_t attempts);
 api::ProblemDetails out_of_memory_problem(const JobId& id);
-api::ProblemDetails internal_problem(const JobId& id); // the log has the rest
-api::ProblemDetails faults_problem(const std::vector<renderer::Fault>& faults);
+api::ProblemDetails internal_problem(const JobId& id);                   // the log has the rest
+api::ProblemDetails faults_problem(std::vector<renderer::Fault> faults); // as one list holds them
 
-// A mesh that does not import, told at every object that uses it.
-std::vector<renderer::Fault>
-faults_of(const ImportFailure& failure, const renderer::SceneDescription& scene, std::uint32_t mesh);
+// Meshes that do not import, by their place in the scene, told at every object that uses one.
+using FailedMeshes = std::map<std::uint32_t, ImportFailure>;
+void add_faults(const FailedMeshes& failed,
+                const renderer::SceneDescription& scene,
+                renderer::FaultList& faults);
 
 } // namespace server

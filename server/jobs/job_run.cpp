@@ -3,6 +3,7 @@
 #include "api/provenance.h"
 #include "renderer/accel/prepared_mesh.h"
 #include "renderer/film/develop.h"
+#include "renderer/plan/budget.h"
 #include "renderer/plan/plan.h"
 #include "renderer/scene/scene.h"
 #include "server/jobs/job_problems.h"
@@ -19,11 +20,22 @@ namespace {
 
 using Meshes = std::vector<std::shared_ptr<const renderer::PreparedMesh>>;
 
-std::variant<Meshes, api::ProblemDetails, StoppedRun> import_meshes(const JobRun& run, const RunTools& tools)
+struct Imported {
+    Meshes meshes;
+    std::vector<renderer::MeshFacts> facts; // one a mesh
+};
+
+// A mesh that takes the scene over a limit is the last one: the job never holds more than that.
+std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobRun& run,
+                                                                      const RunTools& tools)
 {
     const renderer::SceneDescription& scene = run.request.scene;
-    Meshes meshes;
-    std::vector<renderer::Fault> faults;
+    Imported imported;
+    FailedMeshes failed;
+    renderer::FaultList faults;
+    renderer::Budget budget = renderer::predict(scene, {}, run.request.settings);
+    renderer::check_budget(budget, tools.limits, faults);
+    if (!faults.empty()) return faults_problem(faults.take());
     for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
         auto answer = tools.imports.import({.name = scene.meshes[i].name,
                                             .digest = scene.meshes[i].digest,
@@ -31,17 +43,27 @@ std::variant<Meshes, api::ProblemDetails, StoppedRun> import_meshes(const JobRun
                                             .split = run.request.settings.acceleration.split},
                                            tools.pool,
                                            run.stop);
-        if (const auto* failure = std::get_if<ImportFailure>(&answer)) {
-            const std::vector<renderer::Fault> found = faults_of(*failure, scene, i);
-            faults.insert(faults.end(), found.begin(), found.end());
+        if (auto* failure = std::get_if<ImportFailure>(&answer)) {
+            failed.emplace(i, std::move(*failure));
             continue;
         }
         auto& asset = std::get<PreparedAsset>(answer);
         if (!asset.mesh) return StoppedRun{};
-        meshes.push_back(std::move(asset.mesh));
+        imported.facts.push_back(renderer::facts_of(renderer::mesh_of(*asset.mesh)));
+        imported.meshes.push_back(std::move(asset.mesh));
+        renderer::add_mesh(budget, imported.facts.back());
+        renderer::FaultList excess;
+        renderer::check_budget(budget, tools.limits, excess);
+        if (excess.empty()) continue;
+        for (renderer::Fault& fault : excess.take()) {
+            fault.detail += ", counted up to the mesh \"" + scene.meshes[i].name + "\"";
+            faults.add(std::move(fault));
+        }
+        break;
     }
-    if (!faults.empty()) return faults_problem(faults);
-    return meshes;
+    add_faults(failed, scene, faults);
+    if (!faults.empty()) return faults_problem(faults.take());
+    return imported;
 }
 
 double aspect_of(const renderer::ImageSettings& image)
@@ -88,23 +110,19 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     const auto begun = Clock::now();
     const renderer::RenderSettings& settings = run.request.settings;
 
-    auto imported = import_meshes(run, tools);
-    if (auto* problem = std::get_if<api::ProblemDetails>(&imported)) return std::move(*problem);
-    if (std::holds_alternative<StoppedRun>(imported)) return StoppedRun{};
-    const Meshes meshes = std::move(std::get<Meshes>(imported));
+    auto answer = import_meshes(run, tools);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&answer)) return std::move(*problem);
+    if (std::holds_alternative<StoppedRun>(answer)) return StoppedRun{};
+    const Imported imported = std::move(std::get<Imported>(answer));
 
-    std::vector<renderer::MeshFacts> facts;
-    facts.reserve(meshes.size());
-    for (const auto& mesh : meshes)
-        facts.push_back(renderer::facts_of(renderer::mesh_of(*mesh)));
     renderer::AssumedScene scene =
-        renderer::assume_defaults(run.request.scene, facts, aspect_of(settings.image));
-    auto planned = renderer::make_plan(scene, facts, settings, tools.limits);
-    if (const auto* faults = std::get_if<std::vector<renderer::Fault>>(&planned))
-        return faults_problem(*faults);
+        renderer::assume_defaults(run.request.scene, imported.facts, aspect_of(settings.image));
+    auto planned = renderer::make_plan(scene, imported.facts, settings, tools.limits);
+    if (auto* faults = std::get_if<std::vector<renderer::Fault>>(&planned))
+        return faults_problem(std::move(*faults));
     const renderer::Plan plan = std::move(std::get<renderer::Plan>(planned));
-    const auto prepared = renderer::prepare(scene, plan, meshes, settings, tools.pool);
-    if (run.stop.stop_requested()) return StoppedRun{};
+    const auto prepared = renderer::prepare(scene, plan, imported.meshes, settings, tools.pool, run.stop);
+    if (!prepared || run.stop.stop_requested()) return StoppedRun{};
 
     run.running();
     const double prepare_s = std::chrono::duration<double>(Clock::now() - begun).count();

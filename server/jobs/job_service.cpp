@@ -210,17 +210,17 @@ std::optional<api::JobView> JobService::cancel(const JobId& id)
     return get(id);
 }
 
-bool JobService::remove(const JobId& id)
+std::optional<api::ProblemDetails> JobService::remove(const JobId& id)
 {
     State& s = *state_;
-    if (!cancel(id)) return false;
+    if (!cancel(id)) return not_found_problem(id);
     if (!s.live.wait_forgotten(id, std::chrono::steady_clock::now() + kRemovalPatience))
-        throw StoreError("job " + id + " did not end in time to be removed", false);
+        return still_ending_problem(id);
     const std::optional<JobRecord> record = s.store.get({}, id);
-    if (!record || !s.store.remove({}, id)) return false;
+    if (!record || !s.store.remove({}, id)) return not_found_problem(id);
     s.live.forget(id); // wakes who waits for it
     if (record->result) s.keeper.collect(record->result->image_digest);
-    return true;
+    return std::nullopt;
 }
 
 std::variant<JobOutcome, api::ProblemDetails> JobService::State::finished(const JobId& id)

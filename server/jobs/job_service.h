@@ -68,7 +68,8 @@ public:
     wait(const JobId& id, std::chrono::milliseconds timeout, const std::string& known_etag = {});
     std::variant<std::string, api::ProblemDetails> list(const ListQuery& query); // JSON text
     std::optional<api::JobView> cancel(const JobId& id);                         // idempotent
-    bool remove(const JobId& id); // cancels if active, then forgets; false: not there
+    // Cancels if active, then forgets. Nothing; or why not: 404, 503 still_ending.
+    std::optional<api::ProblemDetails> remove(const JobId& id);
 
     // The picture, or why not: 404, 504 still_running, 409 render_failed, 410 expired. A picture that the
     // disk lost makes the job queued again (504), or is named (500 result_damaged) if a mesh is gone too.

@@ -15,18 +15,17 @@ namespace {
 // Meshes that were imported before and found faulty.
 std::vector<renderer::Fault> known_faults(const api::JobRequest& request, const ImportService& imports)
 {
-    std::vector<renderer::Fault> faults;
+    FailedMeshes failed;
     for (std::uint32_t i = 0; i < request.scene.meshes.size(); ++i) {
-        const auto known = imports.known_failure({.name = request.scene.meshes[i].name,
-                                                  .digest = request.scene.meshes[i].digest,
-                                                  .files = request.files,
-                                                  .split = request.settings.acceleration.split});
-        const auto* failure = std::get_if<ImportFailure>(&known);
-        if (failure == nullptr) continue;
-        const std::vector<renderer::Fault> found = faults_of(*failure, request.scene, i);
-        faults.insert(faults.end(), found.begin(), found.end());
+        auto known = imports.known_failure({.name = request.scene.meshes[i].name,
+                                            .digest = request.scene.meshes[i].digest,
+                                            .files = request.files,
+                                            .split = request.settings.acceleration.split});
+        if (auto* failure = std::get_if<ImportFailure>(&known)) failed.emplace(i, std::move(*failure));
     }
-    return faults;
+    renderer::FaultList faults;
+    add_faults(failed, request.scene, faults);
+    return faults.take();
 }
 
 // Two requests are the same if their bytes and their files are.
@@ -62,8 +61,8 @@ std::variant<Submission, api::ProblemDetails> read_submission(const SubmitWords&
     auto read = api::read_job(words.body, context);
     if (auto* problem = std::get_if<api::ProblemDetails>(&read)) return std::move(*problem);
     const auto& request = std::get<api::JobRequest>(read);
-    const std::vector<renderer::Fault> faults = known_faults(request, imports);
-    if (!faults.empty()) return faults_problem(faults);
+    std::vector<renderer::Fault> faults = known_faults(request, imports);
+    if (!faults.empty()) return faults_problem(std::move(faults));
 
     Submission submission;
     submission.sharing =

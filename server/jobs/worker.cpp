@@ -21,10 +21,11 @@ namespace {
 constexpr std::chrono::hours kLeaseTime{24 * 365};
 constexpr std::chrono::hours kLongWait{1};
 
-// The request was checked when it came; written out it is longer than it was.
+// The limits of JSON were held when the request came; written out with every default it is longer, and has
+// more values and other depths than it had.
 api::ReadContext context_of_stored(renderer::Limits limits)
 {
-    limits.json_bytes = std::numeric_limits<std::uint64_t>::max();
+    limits.json_bytes = limits.json_values = limits.json_depth = std::numeric_limits<std::uint64_t>::max();
     api::ReadContext context;
     context.limits = limits;
     return context;

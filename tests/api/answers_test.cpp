@@ -79,6 +79,13 @@ TEST(JobList, SaysWhereItGoesOn)
     EXPECT_EQ(last["jobs"].size(), 1u);
     EXPECT_FALSE(last.contains("next_cursor"));
     EXPECT_EQ(checked(api::write_job_list({}, "abc"), "JobList")["next_cursor"], "abc");
+
+    api::JobView failed = a_job();
+    failed.state = api::JobState::failed;
+    failed.error = api::problem_from_faults(422, "invalid_scene", {{"/a", "x", "one"}, {"/b", "y", "two"}});
+    const json error = checked(api::write_job_list({failed}, ""), "JobList")["jobs"][0]["error"];
+    EXPECT_EQ(error["errors"], json::array()); // up to a thousand of them: the job itself tells
+    EXPECT_EQ(error["detail"], "2 faults; first: /a: one");
 }
 
 renderer::RenderReport a_report()

@@ -1,4 +1,5 @@
 #include "renderer/camera/camera.h"
+#include "renderer/description/fault_list.h"
 #include "renderer/math/transcendental.h"
 #include "renderer/plan/plan.h"
 #include "renderer/plan/world_bounds.h"
@@ -115,8 +116,7 @@ TEST(AssumeDefaults, FramesTheSameAtEveryScale)
 TEST(AssumeDefaults, FramesThePartThatIsShown)
 {
     MeshFacts facts = cube_facts();
-    facts.parts = {{"lid", 0, 2}};
-    facts.part_bounds = {{{0.5f, 1, 1}, {1, 2, 2}}};
+    facts.parts = {{"lid", {0, 2, {{0.5f, 1, 1}, {1, 2, 2}}}}};
     SceneDescription scene = one_mesh();
     scene.objects[0].shape = renderer::MeshShape{0, "lid"};
     const auto camera = *assume_defaults(scene, std::vector{facts}, 1).description.camera;
@@ -166,7 +166,7 @@ TEST(AssumeDefaults, HasACameraForAPointAndForNothing)
 TEST(MakePlan, NamesEveryFaultAtOnceWithItsPointer)
 {
     MeshFacts facts = cube_facts();
-    facts.parts = {{"lid", 0, 2}, {"body", 2, 10}};
+    facts.parts = {{"lid", {0, 2, {}}}, {"body", {2, 10, {}}}};
     SceneDescription scene = one_mesh();
     scene.objects[0].shape = renderer::MeshShape{0, "lit"};
     scene.objects.emplace_back().world_from_object = Affine3::scale({1, 0, 1});
@@ -248,8 +248,6 @@ TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
     facts.has_normals = facts.has_materials = facts.has_textures = true;
     SceneDescription scene = one_mesh();
     const Plan plan = plan_of(scene, {facts});
-    EXPECT_FALSE(plan.two_levels);
-    EXPECT_TRUE(plan.keep_normals);
     EXPECT_THAT(names(plan.models.used),
                 IsSupersetOf({"assumed_camera",
                               "assumed_sky",
@@ -262,9 +260,6 @@ TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
                               "environment_light"}));
     EXPECT_THAT(names(plan.models.skipped),
                 UnorderedElementsAre("indirect_light", "two_level_bvh", "textures"));
-    EXPECT_EQ(plan.camera_rays, 800u * 600 * 64);
-    EXPECT_EQ(plan.shadow_rays, 2u * 800 * 600 * 64);
-    EXPECT_GT(plan.memory_bytes, 800u * 600 * 24);
 
     scene.materials.push_back({"shiny", renderer::PhongMaterial{}});
     scene.objects[0].material = 0;
@@ -272,8 +267,6 @@ TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
     scene.objects.emplace_back().shape = renderer::SphereShape{};
     scene.lights.emplace_back(renderer::SpotLight{});
     const Plan other = plan_of(scene, {facts});
-    EXPECT_TRUE(other.two_levels);
-    EXPECT_FALSE(other.keep_normals);
     EXPECT_THAT(names(other.models.used),
                 IsSupersetOf({"two_level_bvh",
                               "phong_normalized",
@@ -283,4 +276,46 @@ TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
                               "hard_shadows"}));
     EXPECT_THAT(names(other.models.skipped),
                 UnorderedElementsAre("indirect_light", "smooth_normals", "environment_light"));
+}
+
+TEST(MakePlan, TellsOfTwoLevelsOnlyWhereOneTreeStandsOverOthers)
+{
+    const auto told = [](const SceneDescription& scene) {
+        const Plan plan = plan_of(scene, {cube_facts()});
+        const auto is_it = [](const ModelChoice& choice) { return choice.name == "two_level_bvh"; };
+        EXPECT_NE(std::any_of(plan.models.used.begin(), plan.models.used.end(), is_it),
+                  std::any_of(plan.models.skipped.begin(), plan.models.skipped.end(), is_it));
+        return std::any_of(plan.models.used.begin(), plan.models.used.end(), is_it);
+    };
+    SceneDescription scene;
+    EXPECT_FALSE(told(scene));
+    scene.objects.emplace_back().shape = renderer::SphereShape{};
+    EXPECT_FALSE(told(scene));
+    scene = one_mesh();
+    scene.objects[0].world_from_object = Affine3::translate({1, 2, 3});
+    EXPECT_FALSE(told(scene));
+    scene.objects.push_back(scene.objects[0]);
+    EXPECT_TRUE(told(scene));
+}
+
+TEST(MakePlan, ListsAThousandFaultsAndCountsTheOthers)
+{
+    SceneDescription scene;
+    for (int i = 0; i < 2500; ++i)
+        scene.objects.emplace_back().shape = renderer::SphereShape{-1};
+    const auto faults = faults_of(scene, {});
+    ASSERT_EQ(faults.size(), renderer::kMostFaults + 1);
+    EXPECT_EQ(faults.back(), renderer::more_faults(1500));
+}
+
+TEST(MakePlan, FindsAPartAmongAsManyAsThereAreObjects)
+{
+    MeshFacts facts = cube_facts();
+    SceneDescription scene = one_mesh();
+    scene.objects.clear();
+    for (std::uint32_t i = 0; i < 100'000; ++i) { // ten thousand million comparisons, were each looked at
+        facts.parts["part" + std::to_string(i)] = {0, 1, facts.bounds};
+        scene.objects.emplace_back().shape = renderer::MeshShape{0, "part" + std::to_string(i)};
+    }
+    EXPECT_TRUE(faults_of(scene, {facts}).empty());
 }

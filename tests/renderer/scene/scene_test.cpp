@@ -91,6 +91,40 @@ TEST(Scene, SharesOneMeshAmongItsInstances)
     EXPECT_LT(ten.scene->geometry().bvh_bytes, one.scene->geometry().bvh_bytes * 3 / 2);
 }
 
+TEST(Scene, SharesATreeAmongPartsOfTheSameTriangles)
+{
+    ThreadPool pool(1);
+    TestScene test = scene_of(tests::knot());
+    Mesh& mesh = test.meshes[0];
+    const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
+    mesh.parts = {{"whole", 0, all}, {"half", 0, all / 2}, {"as half", 0, all / 2}, {"half", 0, 1}};
+    const auto bvh_bytes = [&](const std::vector<const char*>& parts) {
+        test.description.objects.clear();
+        for (const char* part : parts)
+            test.description.objects.emplace_back().shape = MeshShape{0, part};
+        const auto ready = make_ready(test, pool);
+        EXPECT_EQ(ready.scene->geometry().triangles, all);
+        return ready.scene->geometry().bvh_bytes;
+    };
+    EXPECT_EQ(bvh_bytes({"", "whole"}), bvh_bytes({"", ""}));
+    EXPECT_EQ(bvh_bytes({"half", "as half"}), bvh_bytes({"half", "half"}));
+    EXPECT_GT(bvh_bytes({"half", ""}), bvh_bytes({"", ""})); // of two of one name, the first
+}
+
+TEST(Scene, IsNotMadeOnceAStopIsRequested)
+{
+    ThreadPool pool(1);
+    TestScene test = scene_of(two_colours());
+    test.description.objects[0].shape = MeshShape{0, "right"};
+    const std::vector facts{facts_of(test.meshes[0])};
+    const AssumedScene assumed = assume_defaults(test.description, facts, 1);
+    const std::vector prepared{prepare_mesh(test.meshes[0], BvhSplit::sah, pool)};
+    std::stop_source stop;
+    EXPECT_TRUE(prepare(assumed, Plan{}, prepared, test.settings, pool, stop.get_token()));
+    stop.request_stop();
+    EXPECT_FALSE(prepare(assumed, Plan{}, prepared, test.settings, pool, stop.get_token()));
+}
+
 TEST(Scene, TurnsNormalsToTheViewerAlsoWhenMirrored)
 {
     ThreadPool pool(1);

@@ -59,8 +59,14 @@ TEST_P(JobCrash, ServesFromMemoryUntilTheDiskTakesTheResult)
     tests::digest_of_picture(*node, id);
     // The same job, meanwhile, has it too.
     EXPECT_TRUE(tests::succeeded(*node, submit(*node, tests::quick_job()).id).reused);
+    // The row cannot be removed before it is there.
+    const auto problem = node->jobs.remove(id);
+    ASSERT_TRUE(problem);
+    EXPECT_EQ(problem->status, 503);
+    EXPECT_EQ(problem->code, "still_ending");
+    EXPECT_TRUE(problem->retryable);
     faults.no_results = false;
-    EXPECT_TRUE(node->jobs.remove(id)); // waits for the row
+    EXPECT_TRUE(tests::removed(*node, id)); // waits for the row
 }
 
 TEST_P(JobCrash, ListsAJobUnderTheStateThatItIsSeenIn)

@@ -141,6 +141,14 @@ inline api::ProblemDetails image_refusal(Node& node, const server::JobId& id)
     return problem != nullptr ? *problem : api::ProblemDetails{};
 }
 
+// False: it is not there.
+inline bool removed(Node& node, const server::JobId& id)
+{
+    const auto problem = node.jobs.remove(id);
+    EXPECT_TRUE(!problem || problem->status == 404) << api::write_problem(*problem);
+    return !problem;
+}
+
 inline std::string upload(Node& node, const std::string& bytes)
 {
     return node.blobs.put(server::BlobStore::Kind::asset,

@@ -17,17 +17,36 @@ renderer::SceneDescription scene_of(const std::vector<std::uint32_t>& meshes)
     return scene;
 }
 
+std::vector<Fault> faults_of(const server::FailedMeshes& failed, const std::vector<std::uint32_t>& meshes)
+{
+    renderer::FaultList faults;
+    server::add_faults(failed, scene_of(meshes), faults);
+    return faults.take();
+}
+
 TEST(Faults, AreToldAtEveryObjectThatUsesTheMesh)
 {
-    const server::ImportFailure failure{.code = "truncated", .detail = "the data ends"};
-    const std::vector<Fault> faults = server::faults_of(failure, scene_of({0, 1, 0}), 0);
+    const server::FailedMeshes first{{0, {.code = "truncated", .detail = "the data ends"}}};
+    const std::vector<Fault> faults = faults_of(first, {0, 1, 0});
     ASSERT_EQ(faults.size(), 2U);
     EXPECT_EQ(faults[0].pointer, "/scene/objects/0/mesh");
     EXPECT_EQ(faults[1].pointer, "/scene/objects/2/mesh");
     EXPECT_EQ(faults[1].code, "truncated");
     EXPECT_EQ(faults[1].detail, "the data ends");
-    ASSERT_EQ(server::faults_of(failure, scene_of({1}), 0).size(), 1U) << "none uses it";
-    EXPECT_EQ(server::faults_of(failure, scene_of({1}), 0).front().pointer, "/files");
+    ASSERT_EQ(faults_of(first, {1}).size(), 1U) << "none uses it";
+    EXPECT_EQ(faults_of(first, {1}).front().pointer, "/files");
+    EXPECT_TRUE(faults_of({}, {0, 1}).empty());
+}
+
+TEST(Faults, OfSeveralMeshesComeInTheOrderOfTheObjects)
+{
+    const std::vector<Fault> faults =
+        faults_of({{0, {"a", ""}}, {1, {"b", ""}}, {2, {"c", ""}}}, {1, 3, 0, 1});
+    ASSERT_EQ(faults.size(), 4U);
+    EXPECT_EQ(faults[0], (Fault{"/scene/objects/0/mesh", "b", ""}));
+    EXPECT_EQ(faults[1], (Fault{"/scene/objects/2/mesh", "a", ""}));
+    EXPECT_EQ(faults[2], (Fault{"/scene/objects/3/mesh", "b", ""}));
+    EXPECT_EQ(faults[3], (Fault{"/files", "c", ""}));
 }
 
 TEST(Faults, AreOverALimitOnlyWhereAllAre)
@@ -57,6 +76,7 @@ TEST(JobProblems, AreRetryableExactlyWhereTryingAgainMayHelp)
                                 server::queue_full_problem(2),
                                 server::still_running_problem("42"),
                                 server::renders_again_problem("42"),
+                                server::still_ending_problem("42"),
                                 server::out_of_memory_problem("42"),
                                 server::internal_problem("42")})
         EXPECT_TRUE(problem.retryable) << problem.code;

@@ -199,11 +199,11 @@ TEST_P(JobService, ForgetsAJobAndItsPicture)
     node->jobs.start();
     const api::JobView done = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
     const std::string digest = tests::digest_of_picture(*node, done.id);
-    EXPECT_TRUE(node->jobs.remove(done.id));
+    EXPECT_TRUE(tests::removed(*node, done.id));
     EXPECT_FALSE(node->jobs.get(done.id));
     EXPECT_FALSE(node->blobs.has(server::BlobStore::Kind::result, digest));
     EXPECT_EQ(tests::image_refusal(*node, done.id).status, 404);
-    EXPECT_FALSE(node->jobs.remove(done.id));
+    EXPECT_FALSE(tests::removed(*node, done.id));
 }
 
 TEST_P(JobService, RemovesARunningJob)
@@ -212,10 +212,10 @@ TEST_P(JobService, RemovesARunningJob)
     node->jobs.start();
     const api::JobView job = submit(*node, tests::endless_job());
     tests::running(*node, job.id);
-    EXPECT_TRUE(node->jobs.remove(job.id));
+    EXPECT_TRUE(tests::removed(*node, job.id));
     EXPECT_FALSE(node->jobs.get(job.id));
     const api::JobView queued = submit(*node, tests::endless_job());
-    EXPECT_TRUE(node->jobs.remove(queued.id));
+    EXPECT_TRUE(tests::removed(*node, queued.id));
 }
 
 TEST_P(JobService, LetsResultsExpire)

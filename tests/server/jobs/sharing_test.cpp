@@ -87,7 +87,7 @@ TEST_P(SharedRender, OutlivesTheJobThatMadeIt)
     const api::JobView first = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
     const api::JobView second = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
     const std::string digest = tests::digest_of_picture(*node, first.id);
-    EXPECT_TRUE(node->jobs.remove(first.id));
+    EXPECT_TRUE(tests::removed(*node, first.id));
     EXPECT_EQ(tests::digest_of_picture(*node, second.id), digest);
     EXPECT_TRUE(node->blobs.has(server::BlobStore::Kind::result, digest));
 }

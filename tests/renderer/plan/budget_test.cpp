@@ -1,0 +1,86 @@
+#include "renderer/plan/budget.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+using namespace testing;
+using renderer::Budget;
+using renderer::FaultList;
+using renderer::Limits;
+using renderer::MeshFacts;
+using renderer::SceneDescription;
+
+namespace {
+
+constexpr std::uint32_t kTriangles = 1'000'000;
+
+// A mesh whose parts lie within one another, each a triangle shorter than the one before; and "all", which is
+// the whole, and "again", which is the second one.
+MeshFacts nested()
+{
+    MeshFacts facts;
+    facts.triangles = kTriangles;
+    facts.vertices = kTriangles / 2;
+    for (std::uint32_t depth = 1; depth <= 256; ++depth)
+        facts.parts["part" + std::to_string(depth)] = {depth, kTriangles - depth, {}};
+    facts.parts["all"] = {0, kTriangles, {}};
+    facts.parts["again"] = {1, kTriangles - 1, {}};
+    return facts;
+}
+
+SceneDescription scene_of(const std::vector<std::string>& parts)
+{
+    SceneDescription scene;
+    scene.meshes.push_back({"nested.glb", ""});
+    for (const std::string& part : parts)
+        scene.objects.emplace_back().shape = renderer::MeshShape{0, part};
+    return scene;
+}
+
+std::uint64_t mesh_bytes(const std::vector<std::string>& parts)
+{
+    return predict(scene_of(parts), std::vector{nested()}, {}).mesh_bytes;
+}
+
+} // namespace
+
+TEST(Budget, CountsATreeForEveryDifferentPart)
+{
+    const std::uint64_t whole = mesh_bytes({""}), one = mesh_bytes({"part1"}),
+                        two = mesh_bytes({"part1", "part2"});
+    EXPECT_GT(one, whole + 100ull * kTriangles);
+    EXPECT_GT(two, one + 100ull * kTriangles);
+}
+
+TEST(Budget, CountsOneTreeForPartsOfTheSameTriangles)
+{
+    const std::uint64_t object = mesh_bytes({"", ""}) - mesh_bytes({""});
+    EXPECT_EQ(mesh_bytes({"part1", "again", "part1"}), mesh_bytes({"part1"}) + 2 * object);
+    EXPECT_EQ(mesh_bytes({"all", ""}), mesh_bytes({"", ""}));
+}
+
+TEST(Budget, RefusesMorePartsThanMemoryHolds)
+{
+    std::vector<std::string> parts;
+    for (int depth = 1; depth <= 256; ++depth)
+        parts.push_back("part" + std::to_string(depth));
+    FaultList faults;
+    check_budget(predict(scene_of(parts), std::vector{nested()}, {}), Limits{}, faults);
+    const auto found = faults.take();
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].pointer, "/scene/objects");
+    EXPECT_THAT(found[0].detail, HasSubstr("render_memory_bytes"));
+}
+
+TEST(Budget, GrowsByOneMeshAtATimeToThatOfAll)
+{
+    const SceneDescription scene = scene_of({""});
+    const std::vector<MeshFacts> meshes{nested(), nested()};
+    Budget budget = predict(scene, {}, {});
+    for (const MeshFacts& mesh : meshes)
+        add_mesh(budget, mesh);
+    const Budget all = predict(scene, meshes, {});
+    EXPECT_EQ(budget.triangles, all.triangles);
+    EXPECT_EQ(budget.mesh_bytes, all.mesh_bytes);
+    EXPECT_EQ(budget.film_bytes, all.film_bytes);
+}
