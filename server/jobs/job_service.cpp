@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <atomic>
 #include <string_view>
+#include <thread>
 #include <unordered_map>
 #include <utility>
 
@@ -24,6 +25,7 @@ namespace {
 
 constexpr std::size_t kPictureCacheBytes = 64u << 20;
 constexpr std::chrono::seconds kRemovalPatience{5};
+constexpr std::chrono::milliseconds kLookAgain{5};
 
 std::chrono::seconds retention_of(const renderer::Limits& limits)
 {
@@ -214,13 +216,20 @@ std::optional<api::ProblemDetails> JobService::remove(const JobId& id)
 {
     State& s = *state_;
     if (!cancel(id)) return not_found_problem(id);
-    if (!s.live.wait_forgotten(id, std::chrono::steady_clock::now() + kRemovalPatience))
-        return still_ending_problem(id);
-    const std::optional<JobRecord> record = s.store.get({}, id);
-    if (!record || !s.store.remove({}, id)) return not_found_problem(id);
-    s.live.forget(id); // wakes who waits for it
-    if (record->result) s.keeper.collect(record->result->image_digest);
-    return std::nullopt;
+    const auto deadline = std::chrono::steady_clock::now() + kRemovalPatience;
+    while (s.live.wait_forgotten(id, deadline)) {
+        const std::optional<JobRecord> record = s.store.get({}, id);
+        if (!record) return not_found_problem(id);
+        if (s.store.remove({}, id)) {
+            s.live.forget(id); // wakes who waits for it
+            if (record->result) s.keeper.collect(record->result->image_digest);
+            return std::nullopt;
+        }
+        // Claimed, but the worker has not begun with it, so that nobody would wake us.
+        if (std::chrono::steady_clock::now() > deadline) break;
+        std::this_thread::sleep_for(kLookAgain);
+    }
+    return still_ending_problem(id);
 }
 
 std::variant<JobOutcome, api::ProblemDetails> JobService::State::finished(const JobId& id)

@@ -96,6 +96,24 @@ TEST_P(JobCrash, ListsAJobUnderTheStateThatItIsSeenIn)
     EXPECT_NE(page.find("next_cursor"), std::string::npos) << page;
 }
 
+TEST_P(JobCrash, WaitsWithTheRemovalOfAJobThatIsClaimedButNotYetBegun)
+{
+    std::string id;
+    {
+        const auto node = open();
+        id = submit(*node, tests::quick_job()).id;
+    }
+    const auto node = open(); // nothing of it is in memory
+    const std::vector<server::Lease> leases = node->store->claim("test", 1, std::chrono::hours(1));
+    ASSERT_EQ(leases.size(), 1U);
+    const std::jthread worker([&] {
+        while (node->jobs.get(id)->state != JobState::canceling)
+            std::this_thread::yield();
+        node->store->confirm_cancel(leases.front(), 1);
+    });
+    EXPECT_TRUE(tests::removed(*node, id));
+}
+
 TEST_P(JobCrash, TriesAgainAfterTheStoreFailed)
 {
     DiskFaults faults;
