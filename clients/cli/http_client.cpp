@@ -115,15 +115,14 @@ HttpAnswer HttpClient::send(const HttpRequest& request)
             throw UserError(ExitCode::unreachable,
                             "no service at " + state_->url.origin + " (" + attempt.failure +
                                 "): start heliographd, or give --url or HELIOGRAPH_URL");
-        const double wait_s =
-            std::max(pause_s, attempt.answer ? attempt.answer->retry_after_s().value_or(0) : 0);
         const double left_s = std::chrono::duration<double>(deadline - Clock::now()).count();
-        if (wait_s > left_s) {
+        if (left_s <= 0) {
             if (attempt.answer) return *std::move(attempt.answer);
             throw UserError(ExitCode::unreachable,
                             state_->url.origin + " does not answer (" + attempt.failure + ')');
         }
-        pause(wait_s);
+        const double asked_s = attempt.answer ? attempt.answer->retry_after_s().value_or(0) : 0;
+        pause(std::min(std::max(pause_s, asked_s), left_s)); // Retry-After is a guess: it may be free before
     }
 }
 

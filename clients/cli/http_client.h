@@ -1,7 +1,7 @@
 // HttpClient: requests to one service, patiently: what is busy or restarting is asked again.
 //
 // Retries  429, 503 and broken connections are tried again with growing pauses, not before Retry-After, for
-//          as long as `patience_s`. Every request here may be repeated: a POST of a job carries an
+//          as long as `patience_s`, and a last time when it ends. Every request here may be repeated: a POST of a job carries an
 //          Idempotency-Key. A service that refuses the very first connection is not waited for: the URL is
 //          more likely wrong.
 // Threads  one at a time.

@@ -32,6 +32,8 @@ void DocumentHandlers::ready(Exchange& exchange)
     try {
         if (jobs_.draining())
             reason = "draining: the service stops and takes no new jobs";
+        else if (store_.storage_full())
+            reason = "storage_full: the disk is full; no job is taken or started until there is room";
         else
             store_.depth();
     } catch (const StoreError& error) {

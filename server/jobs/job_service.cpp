@@ -288,8 +288,7 @@ std::variant<std::string, api::ProblemDetails> JobService::scene(const JobId& id
 
 int JobService::estimated_wait_s() const
 {
-    const QueueDepth depth = state_->store.depth();
-    return state_->estimate.seconds(depth.queued + depth.leased);
+    return state_->estimate.seconds();
 }
 
 std::string etag_of(const api::JobView& view)

@@ -78,7 +78,7 @@ public:
     std::variant<std::string, api::ProblemDetails>
     scene(const JobId& id); // as executed, or as accepted until then
 
-    // Seconds until a new job would likely start, from the work queued: Retry-After of a 429.
+    // Seconds until a full queue likely has a place: Retry-After of a 429.
     int estimated_wait_s() const;
 
 private:

@@ -13,10 +13,10 @@ void WaitEstimate::took(double seconds)
     measured_ = true;
 }
 
-int WaitEstimate::seconds(std::uint64_t ahead) const
+int WaitEstimate::seconds() const
 {
     const std::lock_guard lock(mutex_);
-    return static_cast<int>(std::clamp(std::ceil(mean_s_ * static_cast<double>(ahead)), 1.0, 3600.0));
+    return static_cast<int>(std::clamp(std::ceil(mean_s_), 1.0, 30.0));
 }
 
 } // namespace server

@@ -1,9 +1,8 @@
-// WaitEstimate: how long a new job would wait, from how long the last ones took.
+// WaitEstimate: how soon a full queue has a place again, from how long the last jobs took.
 //
 // Threads  every function may be called from any thread.
 #pragma once
 
-#include <cstdint>
 #include <mutex>
 
 namespace server {
@@ -11,8 +10,9 @@ namespace server {
 class WaitEstimate {
 public:
     void took(double seconds);
-    // Whole seconds, 1 to 3600, until a job behind `ahead` others likely starts.
-    int seconds(std::uint64_t ahead) const;
+    // Whole seconds, 1 to 30, until ONE place is likely free: jobs run one after another, each on all threads,
+    // so that is what a single job takes, however many wait. Who asks too early loses nothing but a request.
+    int seconds() const;
 
 private:
     mutable std::mutex mutex_;

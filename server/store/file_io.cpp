@@ -64,15 +64,16 @@ void sync_folder(const std::filesystem::path& folder)
 
 bool make_folder(const std::filesystem::path& folder)
 {
-    if (::mkdir(folder.c_str(), 0750) == 0) {
+    int error = ::mkdir(folder.c_str(), 0750) == 0 ? 0 : errno;
+    if (error == ENOENT && folder.has_parent_path() && folder.parent_path() != folder) {
+        make_folder(folder.parent_path());
+        error =
+            ::mkdir(folder.c_str(), 0750) == 0 ? 0 : errno; // in /proc still ENOENT: nothing is made there
+    }
+    if (error == 0) {
         sync_folder(folder.has_parent_path() ? folder.parent_path() : ".");
         return true;
     }
-    if (errno == ENOENT && folder.has_parent_path() && folder.parent_path() != folder) {
-        make_folder(folder.parent_path());
-        return make_folder(folder);
-    }
-    const int error = errno;
     if (error == EEXIST && std::filesystem::is_directory(folder)) return false;
     throw_io_error("make the folder", folder, error == EEXIST ? ENOTDIR : error);
 }

@@ -11,6 +11,18 @@ namespace {
 
 constexpr int kPagesToMove = 1000; // 4 MiB of log
 
+bool is_storage_full(const std::exception_ptr& error)
+{
+    try {
+        if (error) std::rethrow_exception(error);
+    } catch (const StoreError& of_store) {
+        return of_store.storage_full;
+    } catch (...) {
+        return false; // the request's own
+    }
+    return false;
+}
+
 } // namespace
 
 GroupCommit::GroupCommit(std::unique_ptr<SqliteConnection> db)
@@ -36,6 +48,12 @@ CommitCounts GroupCommit::counts() const
     return counts_;
 }
 
+bool GroupCommit::storage_full() const
+{
+    const std::lock_guard lock(mutex_);
+    return storage_full_;
+}
+
 std::size_t GroupCommit::waiting() const
 {
     const std::lock_guard lock(mutex_);
@@ -50,8 +68,13 @@ void GroupCommit::write_batches(std::stop_token stop)
         if (waiting_.empty()) return;
         const Batch batch = std::exchange(waiting_, {});
         lock.unlock();
+        const std::uint64_t commits = db_->commits();
         commit(batch);
+        const bool wrote = db_->commits() != commits,
+                   refused = std::any_of(
+                       batch.begin(), batch.end(), [](Request*r) { return is_storage_full(r->error); });
         lock.lock();
+        if (wrote || refused) storage_full_ = refused; // who only looked has not learned anything
         const auto failed =
             std::count_if(batch.begin(), batch.end(), [](Request* r) { return r->error != nullptr; });
         counts_.requests += batch.size() - static_cast<std::size_t>(failed);

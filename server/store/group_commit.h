@@ -36,6 +36,7 @@ public:
 
     void run(Durability durability, const Work& work);
     CommitCounts counts() const;
+    bool storage_full() const;   // a write found the disk full, and none has worked since
     std::size_t waiting() const; // requests that the next transaction will carry
 
 private:
@@ -58,11 +59,12 @@ private:
     Durability durability_ = Durability::synced;
     bool log_doubtful_ = false;
 
-    mutable std::mutex mutex_; // of waiting_, done, counts_
+    mutable std::mutex mutex_; // of waiting_, done, counts_, storage_full_
     std::condition_variable_any came_;
     std::condition_variable done_;
     Batch waiting_;
     CommitCounts counts_;
+    bool storage_full_ = false;
     std::jthread thread_; // last: stops first
 };
 

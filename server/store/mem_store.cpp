@@ -58,6 +58,8 @@ public:
         return jobs_.depth();
     }
 
+    bool storage_full() override { return false; }
+
     std::optional<std::uint32_t> queue_position(const JobId& id) override
     {
         const std::lock_guard lock(mutex_);

@@ -107,11 +107,13 @@ SqliteConnection::SqliteConnection(const std::filesystem::path& file, Open open)
     }
     sqlite3_extended_result_codes(db_, 1);
     // In the place of SQLite's own hook, which would checkpoint inside the commit.
-    const auto note_pages = [](void* pages, sqlite3*, const char*, int count) {
-        *static_cast<int*>(pages) = count;
+    const auto note_commit = [](void* connection, sqlite3*, const char*, int count) {
+        auto& self = *static_cast<SqliteConnection*>(connection);
+        self.log_pages_ = count;
+        ++self.commits_;
         return SQLITE_OK;
     };
-    sqlite3_wal_hook(db_, note_pages, &log_pages_);
+    sqlite3_wal_hook(db_, note_commit, this);
 }
 
 SqliteConnection::~SqliteConnection()

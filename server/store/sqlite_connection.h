@@ -66,6 +66,10 @@ public:
 
     // Pages in the write-ahead log after the last commit of this connection.
     int log_pages() const { return log_pages_; }
+    std::uint64_t commits() const
+    {
+        return commits_;
+    } // of this connection, those that wrote nothing left out
     enum class Checkpoint : std::uint8_t { passive, truncate };
     void checkpoint(Checkpoint mode); // passive: as far as readers let it
 
@@ -73,6 +77,7 @@ private:
     sqlite3* db_ = nullptr;
     std::map<std::string, sqlite3_stmt*, std::less<>> compiled_;
     int log_pages_ = 0;
+    std::uint64_t commits_ = 0;
 };
 
 } // namespace server

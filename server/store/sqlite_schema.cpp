@@ -163,6 +163,11 @@ std::unique_ptr<SqliteConnection> open_sqlite_writer(const std::filesystem::path
     }
 }
 
+void touch_database(SqliteConnection& db)
+{
+    set_version(db);
+}
+
 std::unique_ptr<SqliteConnection> open_sqlite_reader(const std::filesystem::path& file)
 {
     auto db = std::make_unique<SqliteConnection>(file, SqliteConnection::Open::existing);

@@ -12,6 +12,8 @@
 namespace server {
 
 std::unique_ptr<SqliteConnection> open_sqlite_writer(const std::filesystem::path& file, std::int64_t now_ms);
+// A write that changes nothing: does the disk take one?
+void touch_database(SqliteConnection& db);
 // Cannot write, never checkpoints.
 std::unique_ptr<SqliteConnection> open_sqlite_reader(const std::filesystem::path& file);
 

@@ -17,7 +17,8 @@ namespace {
 class Embedded final : public SqliteStore {
 public:
     Embedded(const std::filesystem::path& file, StoreClock clock)
-        : clock_(std::move(clock)), writer_(open_sqlite_writer(file, clock_.wall_ms())), readers_(file)
+        : file_(file), clock_(std::move(clock)), writer_(open_sqlite_writer(file, clock_.wall_ms())),
+          readers_(file)
     {
     }
 
@@ -26,6 +27,7 @@ public:
     std::optional<JobRecord> get(const Tenant& tenant, const JobId& id) override;
     ListPage list(const ListQuery& query) override;
     QueueDepth depth() override { return readers_.read(read_depth); }
+    bool storage_full() override;
     std::optional<std::uint32_t> queue_position(const JobId& id) override;
     std::vector<Lease>
     claim(const std::string& worker, std::size_t max, std::chrono::milliseconds ttl) override;
@@ -55,6 +57,7 @@ private:
     template <typename Change>
     bool leave(const Lease& lease, std::int64_t now_ms, const Change& change);
 
+    std::filesystem::path file_;
     StoreClock clock_;
     LeaseTable leases_;
     WorkBell bell_;
@@ -114,6 +117,22 @@ ListPage Embedded::list(const ListQuery& query)
         page.jobs.push_back(std::move(job.record));
     if (more) page.next_cursor = cursor_after(static_cast<std::uint64_t>(jobs.back().sequence));
     return page;
+}
+
+bool Embedded::storage_full()
+{
+    if (!writer_.storage_full()) return false;
+    // A page may find room where a job's rows do not.
+    constexpr std::uintmax_t kRoom = 1 << 20;
+    std::error_code unknown;
+    const auto space = std::filesystem::space(file_, unknown);
+    if (!unknown && space.available < kRoom) return true;
+    try {
+        writer_.run(Durability::synced, touch_database);
+    } catch (const StoreError& error) {
+        return error.storage_full;
+    }
+    return writer_.storage_full();
 }
 
 std::optional<std::uint32_t> Embedded::queue_position(const JobId& id)

@@ -145,6 +145,9 @@ public:
     // Without the long texts (request_json, report_json, scene_json), which are empty.
     virtual ListPage list(const ListQuery& query) = 0;
     virtual QueueDepth depth() = 0;
+    // True from a write that found the disk full until one works again. As long as it is so, asking tries a
+    // write of its own: a service that is sent nothing because it is full would never learn that it is not.
+    virtual bool storage_full() = 0;
     // How many queued jobs would be claimed before this one; nothing if it is not queued.
     virtual std::optional<std::uint32_t> queue_position(const JobId& id) = 0;
 

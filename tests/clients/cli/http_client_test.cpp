@@ -42,7 +42,18 @@ TEST(HttpClient, AsksABusyServiceAgain)
     EXPECT_EQ(asked, 3);
 }
 
-TEST(HttpClient, GivesTheBusyAnswerWhenRetryAfterIsBeyondItsPatience)
+TEST(HttpClient, TriesUntilItsPatienceEndsHoweverLongRetryAfterIs)
+{
+    std::atomic<int> asked = 0;
+    const SmallService service([&asked](const httplib::Request&, httplib::Response& response) {
+        response.status = ++asked < 2 ? 429 : 200;
+        response.set_header("Retry-After", "1000");
+    });
+    HttpClient client(service.url(), 0.3, {});
+    EXPECT_EQ(client.send({.path = "/"}).status, 200) << "a place was free before it was announced";
+}
+
+TEST(HttpClient, GivesTheBusyAnswerWhenItsPatienceEnds)
 {
     std::atomic<int> asked = 0;
     const SmallService service([&asked](const httplib::Request&, httplib::Response& response) {
@@ -50,11 +61,12 @@ TEST(HttpClient, GivesTheBusyAnswerWhenRetryAfterIsBeyondItsPatience)
         response.status = 429;
         response.set_header("Retry-After", "1000");
     });
-    HttpClient client(service.url(), 5, {});
-    const HttpAnswer answer = client.send({.path = "/"});
+    const HttpAnswer answer = HttpClient(service.url(), 0.3, {}).send({.path = "/"});
     EXPECT_EQ(answer.status, 429);
     EXPECT_EQ(answer.retry_after_s(), 1000.0);
-    EXPECT_EQ(asked, 1) << "waiting would have been in vain";
+    EXPECT_EQ(asked, 2) << "at once, and when patience ended";
+    EXPECT_EQ(HttpClient(service.url(), 0, {}).send({.path = "/"}).status, 429);
+    EXPECT_EQ(asked, 3) << "without patience it asks once";
 }
 
 TEST(HttpClient, DoesNotRepeatOtherAnswers)

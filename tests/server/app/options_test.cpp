@@ -152,6 +152,7 @@ TEST(Options, HelpTellsEveryFlagItsVariableAndItsDefault)
                              "--limit-queue-jobs",
                              "Exit codes"})
         EXPECT_NE(help.text.find(text), std::string::npos) << text;
+    EXPECT_EQ(help.text.find("/metrics"), std::string::npos) << "no such route is served";
 }
 
 } // namespace

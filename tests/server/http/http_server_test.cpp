@@ -1,5 +1,6 @@
 #include "server/http/http_server.h"
 #include "tests/server/http/live_service.h"
+#include "tests/server/jobs/faulty_store.h"
 
 #include <gtest/gtest.h>
 
@@ -214,6 +215,26 @@ TEST(HttpServer, TellsOnBothListenersWhetherItIsReady)
     EXPECT_EQ(refused.status, 503);
     EXPECT_EQ(code_of(refused), "draining");
     EXPECT_NE(refused.header("retry-after"), "");
+}
+
+TEST(HttpServer, IsNotReadyWhileTheDiskIsFull)
+{
+    tests::DiskFaults disk;
+    const LiveService service({},
+                              HELIOGRAPH_BIN_DIR "/heliograph-import",
+                              std::make_unique<tests::FaultyStore>(server::make_mem_store(), disk));
+    const std::vector<int> ports{service.http.port(), service.http.health_port()};
+    disk.full = true;
+    EXPECT_EQ(code_of(service.submit(quick_job())), "storage_full");
+    for (const int port : ports) {
+        const auto ready = fetch(port, "GET", "/readyz");
+        EXPECT_EQ(ready.status, 503);
+        EXPECT_NE(ready.body.find("storage_full"), std::string::npos) << ready.body;
+        EXPECT_EQ(fetch(port, "GET", "/healthz").status, 200) << "a restart would not help";
+    }
+    disk.full = false;
+    for (const int port : ports)
+        EXPECT_EQ(fetch(port, "GET", "/readyz").status, 200);
 }
 
 TEST(HttpServer, StaysHealthyWhileSlowClientsHoldEveryThread)

@@ -16,6 +16,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace tests {
 
@@ -27,9 +28,10 @@ using test_support::RawConnection;
 class LiveService {
 public:
     explicit LiveService(const renderer::Limits& limits = {},
-                         const std::string& importer = HELIOGRAPH_BIN_DIR "/heliograph-import")
-        : store(server::make_mem_store()), blobs(folder.path() / "blobs"),
-          imports(importer, blobs, limits, log), jobs(*store, blobs, imports, {limits, 1, log}),
+                         const std::string& importer = HELIOGRAPH_BIN_DIR "/heliograph-import",
+                         std::unique_ptr<server::Store> jobs_kept = server::make_mem_store())
+        : store(std::move(jobs_kept)), blobs(folder.path() / "blobs"), imports(importer, blobs, limits, log),
+          jobs(*store, blobs, imports, {limits, 1, log}),
           http(jobs, *store, blobs, imports, log, options(limits))
     {
         jobs.start();

@@ -40,6 +40,7 @@ public:
     }
     server::ListPage list(const server::ListQuery& query) override { return real_->list(query); }
     server::QueueDepth depth() override { return real_->depth(); }
+    bool storage_full() override { return faults_.full || real_->storage_full(); }
     std::optional<std::uint32_t> queue_position(const server::JobId& id) override
     {
         return real_->queue_position(id);

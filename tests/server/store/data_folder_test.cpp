@@ -44,4 +44,11 @@ TEST(DataFolder, SaysWhichFolderCannotBeMade)
             << refusal_of(path);
 }
 
+TEST(DataFolder, IsNotTriedForEverWhereNothingCanBeMade)
+{
+    for (const char* path : {"/proc/absent", "/proc/absent/data"}) // mkdir says ENOENT, though /proc is there
+        EXPECT_NE(refusal_of(path).find("cannot make the folder /proc/absent"), std::string::npos)
+            << refusal_of(path);
+}
+
 } // namespace

@@ -202,18 +202,27 @@ TEST(SqliteStore, RefusesAllWhileTheDiskIsFullAndStillReads)
     FaultyDisk disk;
     const auto store = open_sqlite_store(folder.path() / "jobs.sqlite");
     const auto id = store->submit(a_request("before")).job.id;
+    EXPECT_FALSE(store->storage_full());
     disk.fail_at(0, SQLITE_FULL, 1'000'000);
+    EXPECT_FALSE(store->storage_full()) << "nobody has tried yet";
     for (int i = 0; i < 5; ++i) {
         EXPECT_THROW(store->submit(a_request("refused")), StoreError);
         EXPECT_THROW(store->cancel("alice", id, 1), StoreError);
         EXPECT_THROW(store->claim("worker", 1, kTtl), StoreError);
         EXPECT_EQ(store->get("alice", id)->state, StoredState::queued);
         EXPECT_EQ(store->list({.tenant = "alice"}).jobs.size(), 1U);
+        EXPECT_TRUE(store->storage_full());
     }
     disk.fail_at(0, SQLITE_OK, 0);
     EXPECT_EQ(store->claim("worker", 1, kTtl).at(0).job, id) << "a claim that failed leases nothing";
     EXPECT_EQ(store->get("alice", id)->attempts, 1U);
     EXPECT_EQ(store->submit(a_request("after")).status, SubmitStatus::accepted);
+    EXPECT_FALSE(store->storage_full());
+
+    disk.fail_at(0, SQLITE_FULL, 1'000'000);
+    EXPECT_THROW(store->submit(a_request("refused")), StoreError);
+    disk.fail_at(0, SQLITE_OK, 0);
+    EXPECT_FALSE(store->storage_full()) << "it finds out by itself";
 }
 
 TEST(SqliteStore, SyncsWhatClientsAreToldAndWritesWhatWorkersSay)
@@ -291,7 +300,9 @@ TEST(FullDisk, RefusesWithStorageFullAndGoesOnWhenThereIsRoom)
         }
         EXPECT_EQ(blobs.total_bytes(server::BlobStore::Kind::asset), 0U);
         EXPECT_TRUE(store->get("alice", *acknowledged.begin()));
+        EXPECT_TRUE(store->storage_full());
         disk.grow();
+        EXPECT_FALSE(store->storage_full());
         EXPECT_TRUE(
             blobs.has(server::BlobStore::Kind::asset, blobs.put(server::BlobStore::Kind::asset, blob)));
         acknowledged.insert(store->submit(request).job.id);
