@@ -48,6 +48,7 @@ constexpr std::array kTitles{
     Title{"storage_full", "Storage is full"},
     Title{"target_missed", "Accuracy target was missed"},
     Title{"time_limit", "Time limit reached"},
+    Title{"too_many_bodies", "Too many bodies at the same time"},
     Title{"too_many_waiters", "Too many waiting requests"},
     Title{"unsupported", "Not available in this build"},
     Title{"unsupported_media_type", "Content type is not supported"},

@@ -22,6 +22,7 @@ GuardOptions guard_options(const HttpOptions& options)
     GuardOptions guard;
     guard.threads = static_cast<std::size_t>(options.limits.waiters) + kOrdinaryThreads;
     guard.queue = options.connection_queue;
+    guard.bodies_per_client = guard.threads / 3;
     guard.stream.head = std::chrono::seconds(options.limits.header_s);
     guard.stream.idle_body = std::chrono::seconds(options.limits.idle_body_s);
     guard.stream.idle_write = options.write_stall;
@@ -33,6 +34,7 @@ GuardOptions health_options(const HttpOptions& options)
 {
     GuardOptions guard = guard_options(options);
     guard.threads = kHealthThreads;
+    guard.bodies_per_client = 1; // nothing here takes one
     guard.queue = kHealthQueue;
     guard.requests_per_connection = 1; // two threads: nobody keeps one
     guard.drain = std::chrono::seconds(1);

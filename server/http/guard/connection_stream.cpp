@@ -12,9 +12,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// How often an idle connection looks whether it should give its thread back.
+// How often an idle or refused connection looks whether it should give its thread back.
 constexpr milliseconds kGlance{100};
 constexpr std::size_t kReceiveBytes = 16 << 10;
+constexpr std::size_t kSmallBody = 64 << 10;
 constexpr milliseconds kLinger{1000};
 constexpr std::size_t kLingerBytes = 4 << 20;
 
@@ -109,10 +110,22 @@ void ConnectionStream::begin(const RequestHead& head)
     body_left_ = head.content_length.value_or(0);
     body_received_ = 0;
     decoder_ = {};
+    place_.reset();
     body_since_ = Clock::now();
     write_since_ = body_since_;
     status_ = 0;
     bytes_written_ = 0;
+}
+
+bool ConnectionStream::body_comes_within(milliseconds moment)
+{
+    if (chunked_ || continue_due_ || body_left_ > kSmallBody) return false;
+    const auto end = Clock::now() + moment;
+    while (buffer_.size() - buffer_at_ < body_left_) {
+        const auto left = std::chrono::ceil<milliseconds>(end - Clock::now());
+        if (left.count() <= 0 || !receive(left)) return false;
+    }
+    return true;
 }
 
 bool ConnectionStream::too_slow(Clock::time_point since, std::uint64_t bytes) const
@@ -157,6 +170,7 @@ bool ConnectionStream::fill_body()
         buffer_at_ += before - raw.size();
         body_received_ += before - raw.size();
     }
+    if (body_complete()) place_.reset();
     return true;
 }
 
@@ -219,15 +233,17 @@ bool ConnectionStream::peer_is_there() const
     return count > 0 || (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR));
 }
 
-void ConnectionStream::linger()
+void ConnectionStream::linger(const std::function<bool()>& give_up)
 {
     ::shutdown(fd_, SHUT_WR);
     const auto end = Clock::now() + kLinger;
     std::size_t dropped = 0;
-    while (dropped < kLingerBytes && Clock::now() < end) {
+    while (dropped < kLingerBytes && Clock::now() < end && !give_up()) {
         buffer_.clear();
         buffer_at_ = 0;
-        if (!receive(std::chrono::ceil<milliseconds>(end - Clock::now()))) return;
+        const auto left = std::chrono::ceil<milliseconds>(end - Clock::now());
+        if (!wait_for(POLLIN, std::min(left, kGlance))) continue;
+        if (!receive(milliseconds(0))) return;
         dropped += buffer_.size();
     }
 }

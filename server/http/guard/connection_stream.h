@@ -8,6 +8,7 @@
 // Threads  one.
 #pragma once
 
+#include "server/http/guard/body_places.h"
 #include "server/http/guard/chunk_decoder.h"
 #include "server/http/guard/request_head.h"
 
@@ -16,8 +17,10 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace server {
 
@@ -40,6 +43,10 @@ public:
     // What httplib reads from now on: the rewritten head and the body.
     void begin(const RequestHead& head);
 
+    // Collects a small body whose end nobody has to wait for. False: it is large, chunked, asked for
+    // 100 Continue, or is not there after `moment`.
+    bool body_comes_within(std::chrono::milliseconds moment);
+    void hold_until_body_is_read(BodyPlaces::Place place) { place_ = std::move(place); }
     bool body_complete() const
     {
         return !read_failed_ && body_left_ == 0 && (!chunked_ || decoder_.finished());
@@ -48,8 +55,9 @@ public:
     bool peer_is_there() const;            // false when the client has hung up
     int status() const { return status_; } // of the answer written, 0 before
     std::uint64_t bytes_written() const { return bytes_written_; }
-    // Reads and drops what still comes, shortly, so that the client sees the answer instead of a reset.
-    void linger();
+    // Reads and drops what still comes, shortly, so that the client sees the answer instead of a reset; not
+    // longer than until `give_up`.
+    void linger(const std::function<bool()>& give_up);
 
     bool is_readable() const override;
     bool is_writable() const override { return !write_failed_; }
@@ -77,6 +85,7 @@ private:
     bool chunked_ = false, continue_due_ = false, read_failed_ = false, write_failed_ = false;
     std::uint64_t body_left_ = 0, body_received_ = 0;
     ChunkDecoder decoder_;
+    std::optional<BodyPlaces::Place> place_; // while the body is on its way
     Clock::time_point body_since_, write_since_;
     int status_ = 0;
     std::uint64_t bytes_written_ = 0;

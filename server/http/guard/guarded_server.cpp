@@ -49,7 +49,7 @@ problem_text(int status, const std::string& code, const std::string& detail, con
     problem.status = status;
     problem.code = code;
     problem.detail = detail;
-    problem.retryable = status == 503 || status == 408;
+    problem.retryable = status == 503 || status == 429 || status == 408;
     problem.request_id = request_id;
     return api::write_problem(problem);
 }
@@ -71,7 +71,7 @@ void explain(const httplib::Request& request, httplib::Response& response)
 } // namespace
 
 GuardedServer::GuardedServer(const GuardOptions& options, const Log& log, const Dispatch& dispatch)
-    : options_(options), log_(log)
+    : options_(options), log_(log), bodies_(options.bodies_per_client)
 {
     register_handlers(dispatch);
 }
@@ -230,6 +230,15 @@ bool GuardedServer::serve_one(ConnectionStream& stream, const std::string& block
         return false;
     }
     stream.begin(head);
+    if (!place_body(stream, head)) {
+        refuse(stream,
+               head,
+               {429,
+                "too_many_bodies",
+                "this client's address sends " + std::to_string(options_.bodies_per_client) +
+                    " bodies already, which is all that one may: let some arrive first"});
+        return false;
+    }
     bool closed = false, served = false;
     try {
         served = process_request(
@@ -239,8 +248,23 @@ bool GuardedServer::serve_one(ConnectionStream& stream, const std::string& block
             LogLevel::error, "answer_cut_off", {{"what", error.what()}, {"request_id", head.request_id}});
     }
     log_request(stream, head, served, since);
-    if (!stream.body_complete() && !stream.write_failed()) stream.linger();
+    if (!stream.body_complete() && !stream.write_failed()) stream.linger([this] { return pool_->backlog(); });
     return served && !closed && !stream.write_failed() && stream.body_complete();
+}
+
+// A small body that comes with its head, or close behind it, keeps nobody waiting.
+bool GuardedServer::place_body(ConnectionStream& stream, const RequestHead& head)
+{
+    constexpr std::chrono::milliseconds kMoment{20};
+    const bool announced = head.chunked || head.content_length.value_or(0) > 0;
+    if (!announced || stream.body_comes_within(kMoment)) return true;
+    std::string address;
+    int port = 0;
+    stream.get_remote_ip_and_port(address, port);
+    auto place = bodies_.enter(address);
+    if (!place) return false;
+    stream.hold_until_body_is_read(std::move(*place));
+    return true;
 }
 
 void GuardedServer::give_headers(const RequestHead& head,
@@ -266,9 +290,10 @@ void GuardedServer::refuse(ConnectionStream& stream, const RequestHead& head, co
     const std::string answer =
         "HTTP/1.1 " + std::to_string(fault.status) + " Refused\r\nConnection: close\r\n" +
         (fault.status == 405 ? std::string("Allow: ") + kMethods + "\r\n" : std::string()) +
-        "Content-Type: " + kProblemType + "\r\nX-Content-Type-Options: nosniff\r\n" + kRequestId + ": " +
-        shown.request_id + "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
-    if (stream.write(answer.data(), answer.size()) > 0) stream.linger();
+        (fault.status == 429 ? "Retry-After: 1\r\n" : "") + "Content-Type: " + kProblemType +
+        "\r\nX-Content-Type-Options: nosniff\r\n" + kRequestId + ": " + shown.request_id +
+        "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+    if (stream.write(answer.data(), answer.size()) > 0) stream.linger([this] { return pool_->backlog(); });
     log_request(stream, shown, true, since);
 }
 

@@ -9,6 +9,7 @@
 //          and told through `on_deaf`: nobody can be reached through it any more.
 #pragma once
 
+#include "server/http/guard/body_places.h"
 #include "server/http/guard/connection_stream.h"
 #include "server/http/guard/listener.h"
 #include "server/http/guard/open_connections.h"
@@ -28,7 +29,8 @@ namespace server {
 
 struct GuardOptions {
     std::size_t threads = 16;
-    std::size_t queue = 256; // connections that wait for a thread; beyond: 503 at once
+    std::size_t queue = 256;           // connections that wait for a thread; beyond: 503 at once
+    std::size_t bodies_per_client = 5; // connections of one that may be amid a body; beyond: 429 at once
     std::size_t requests_per_connection = 1000;
     std::chrono::milliseconds drain{5000}; // what is under way when the server stops has so long to end
     std::function<void()> on_deaf;         // called once, from a thread of the server; must not call stop()
@@ -64,6 +66,7 @@ private:
     void register_handlers(const Dispatch& dispatch);
     void serve(ConnectionStream& stream);
     bool serve_one(ConnectionStream& stream, const std::string& block, bool last);
+    bool place_body(ConnectionStream& stream, const RequestHead& head);
     void refuse(ConnectionStream& stream, const RequestHead& head, const HeadFault& fault) const;
     void give_headers(const RequestHead& head, ConnectionStream& stream, httplib::Request& request) const;
     void log_request(const ConnectionStream& stream,
@@ -75,6 +78,7 @@ private:
     const Log& log_;
     int port_ = 0;
     OpenConnections connections_;
+    BodyPlaces bodies_;
     std::optional<Listener> listener_;
     std::optional<WorkerPool> pool_;
     std::atomic<bool> stopping_ = false, listening_ = false;

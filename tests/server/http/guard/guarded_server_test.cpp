@@ -316,6 +316,61 @@ TEST_F(Guarded, RefusesConnectionsBeyondThreadsAndQueue)
     EXPECT_EQ(served->body, "ok");
 }
 
+TEST_F(Guarded, LetsOneClientHaveAFewBodiesOnTheirWayAndNoMore)
+{
+    GuardOptions options;
+    options.threads = 3;
+    options.bodies_per_client = 2;
+    TearDown();
+    start(options);
+    const std::string head = "POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\n";
+    const std::string chunks = "POST /read HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n";
+    RawConnection first(port), second(port);
+    ASSERT_TRUE(first.send(head + "h"));
+    ASSERT_TRUE(second.send(chunks + "1\r\nh\r\n"));
+    std::this_thread::sleep_for(milliseconds(200)); // both hold a thread
+    for (const std::string& start : {head + "h", chunks}) {
+        RawConnection third(port);
+        ASSERT_TRUE(third.send(start));
+        const auto answer = third.read();
+        ASSERT_TRUE(answer);
+        EXPECT_EQ(answer->status, 429);
+        EXPECT_EQ(answer->header("retry-after"), "1");
+        EXPECT_NE(answer->body.find("too_many_bodies"), std::string::npos) << answer->body;
+    }
+    EXPECT_EQ(fetch(port, "GET", "/").body, "ok") << "the last thread is for others";
+    RawConnection whole(port);
+    ASSERT_TRUE(whole.send(head + "hello"));
+    EXPECT_EQ(whole.read().value().body, "hello") << "that came at once";
+
+    ASSERT_TRUE(first.send("ello"));
+    EXPECT_EQ(first.read().value().body, "hello");
+    RawConnection next(port); // has the place of the first, whose connection stays
+    ASSERT_TRUE(next.send(head + "h"));
+    std::this_thread::sleep_for(milliseconds(100));
+    ASSERT_TRUE(next.send("ello"));
+    EXPECT_EQ(next.read().value().body, "hello");
+    ASSERT_TRUE(second.send("0\r\n\r\n"));
+    EXPECT_EQ(second.read().value().body, "h");
+}
+
+TEST_F(Guarded, ServesOthersWhileManyDripBodies)
+{
+    GuardOptions options;
+    options.threads = 6;
+    options.bodies_per_client = 2;
+    TearDown();
+    start(options);
+    std::vector<std::unique_ptr<RawConnection>> dripping;
+    for (int i = 0; i < 100; ++i) {
+        dripping.push_back(std::make_unique<RawConnection>(port));
+        dripping.back()->send("PUT /read HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\nx");
+    }
+    const auto since = std::chrono::steady_clock::now();
+    expect_alive();
+    EXPECT_LT(std::chrono::steady_clock::now() - since, std::chrono::seconds(5));
+}
+
 TEST_F(Guarded, EndsTheWaitOfAClientThatHangsUp)
 {
     RawConnection connection(port);
