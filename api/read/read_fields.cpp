@@ -49,7 +49,10 @@ void ReadFields::finish()
         std::string hint = misplaced(pointer_, name);
         if (hint.empty()) hint = did_you_mean(name, suggested_);
         if (hint.empty()) hint = "; there are: " + listed(suggested_);
-        fault(at(name), "unknown_member", "there is no member " + in_quotes(name) + " here" + hint);
+        // Nobody looks for a name of a megabyte by a pointer of a megabyte.
+        fault(at(shortened(name, kLongestName)),
+              "unknown_member",
+              "there is no member " + in_quotes(name) + " here" + hint);
     }
 }
 

@@ -12,6 +12,15 @@
 
 namespace api {
 
+namespace {
+
+bool may_stand_in_label(char c)
+{
+    return c != ':' && c != 127 && (c < 0 || c >= ' '); // bytes of UTF-8 are below 0
+}
+
+} // namespace
+
 void ReadFields::labels(std::map<std::string, std::string>& labels)
 {
     const Json* node = find("labels");
@@ -24,6 +33,13 @@ void ReadFields::labels(std::map<std::string, std::string>& labels)
     for (const auto& [name, value] : node->items()) {
         const std::string pointer = pointer_to(at("labels"), name);
         if (!name_fits(pointer, name)) continue;
+        if (!std::all_of(name.begin(), name.end(), may_stand_in_label)) {
+            fault(pointer,
+                  "bad_name",
+                  "a label's name has no colon, which ends it where labels are asked for, and no control "
+                  "characters");
+            continue;
+        }
         if (const std::string* text = text_at(value, pointer, 0, kLongestLabel)) labels[name] = *text;
     }
 }

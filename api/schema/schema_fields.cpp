@@ -145,12 +145,14 @@ void SchemaFields::files(const std::map<std::string, std::string>&)
 
 void SchemaFields::labels(const std::map<std::string, std::string>&)
 {
+    Json name = text_schema(1, kLongestName);
+    name["pattern"] = R"(^[^:\u0000-\u001f\u007f]*$)";
     put("labels",
         told({{"type", "object"},
               {"maxProperties", kMostLabels},
-              {"propertyNames", text_schema(1, kLongestName)},
+              {"propertyNames", name},
               {"additionalProperties", text_schema(0, kLongestLabel)}},
-             "the client's own words, to find jobs by"));
+             "the client's own words, to find jobs by: ?label=name:value"));
 }
 
 void SchemaFields::fail_on(const std::vector<std::string>&)

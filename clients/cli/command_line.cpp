@@ -207,7 +207,8 @@ void add_looking(CommandLine& words)
     CLI::App* list = add_command(words, "list", "list jobs, newest first", [&words](const auto& stop) {
         return list_command(words.service, words.list, stop);
     });
-    list->add_option("--state", words.list.state, "only jobs in this state");
+    list->add_option("--state", words.list.state, "only jobs in this state; running: all that a worker has")
+        ->check(CLI::IsMember({"queued", "running", "succeeded", "failed", "canceled", "expired"}));
     list->add_option("--label", words.list.label, "only jobs with this NAME=VALUE");
     list->add_option("--limit", words.list.limit, "at most so many; 0: all")->capture_default_str();
     list->add_flag("--json", words.list.json, "the pages as the service sends them");

@@ -38,7 +38,7 @@ std::optional<api::Problem> read_state(const std::string& text, ListQuery& query
     return api::Problem{"",
                         "invalid_parameter",
                         "state \"" + printable(text) + "\" is not known" + api::did_you_mean(text, known) +
-                            " (known: " + all + ")"};
+                            " (known: " + all + "; running: also those that prepare or are being canceled)"};
 }
 
 } // namespace

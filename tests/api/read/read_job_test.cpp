@@ -254,6 +254,9 @@ TEST(ReadJob, BoundsNamesThatPointersWouldRepeat)
         fault(R"({"scene": {"materials": {")" + name + R"(": {"type": "diffuse", "color": [2, 2, 2]}},
         "objects": [{"shape": "box"}]}})");
     EXPECT_EQ(material.code, "bad_name");
+    const Problem unknown = fault(with('"' + name + R"(": 1)"));
+    EXPECT_EQ(unknown.code, "unknown_member");
+    EXPECT_LT(unknown.pointer.size() + unknown.detail.size(), 1000u);
     EXPECT_EQ(fault(with(R"("labels": {"a": ")" + name + R"("})")).code, "wrong_length");
     EXPECT_EQ(fault(with_object(R"("mesh": ")" + name + '"')).code, "wrong_length");
     std::string labels;
@@ -261,6 +264,16 @@ TEST(ReadJob, BoundsNamesThatPointersWouldRepeat)
         labels += '"' + std::to_string(i) + R"(": "x",)";
     labels.back() = ' ';
     EXPECT_EQ(fault(with(R"("labels": {)" + labels + "}")).code, "wrong_length");
+}
+
+TEST(ReadJob, RefusesLabelsThatCouldNotBeAskedFor)
+{
+    for (const char* name : {"a:b", ":", "a\\u0000", "a\\n", "\\u007f"}) {
+        const Problem refused = fault(with(R"("labels": {")" + std::string(name) + R"(": "x"})"));
+        EXPECT_EQ(refused.code, "bad_name") << name;
+        EXPECT_NE(refused.detail.find("colon"), std::string::npos) << refused.detail;
+    }
+    EXPECT_EQ(accepted(with(R"("labels": {"gr\u00fcn a=b": "x:y\n"})")).labels.begin()->second, "x:y\n");
 }
 
 TEST(ReadJob, RefusesPartsWhoseNamesAreNotUtf8)

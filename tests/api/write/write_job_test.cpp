@@ -23,7 +23,7 @@ public:
         scene(job);
         if (coin()) job.time_limit_s = positive();
         job.priority = whole(0, 100);
-        job.labels = {{"a", text()}, {text(), ""}};
+        job.labels = {{"a", text()}, {label_name(), ""}};
         if (coin()) job.fail_on = {"non_finite"};
         job.provenance = coin();
         return job;
@@ -47,6 +47,14 @@ private:
         static const std::vector<std::string> words{
             "clay", "a/b~c", "grün", "\"quoted\"", "line\nbreak", "\x01", "日本", "x.obj"};
         return words[random_() % words.size()] + std::to_string(random_() % 1000);
+    }
+
+    // As the reader takes it: no control characters.
+    std::string label_name()
+    {
+        std::string name = text();
+        std::erase_if(name, [](char c) { return c >= 0 && c < ' '; });
+        return name;
     }
 
     void settings(renderer::RenderSettings& s)

@@ -96,6 +96,7 @@ TEST(Heliograph, RefusesWrongUseWith2)
     EXPECT_EQ(heliograph({"render", folder.file("absent.json"), "-o", folder.file("a.png")}).exit_code, 2);
     EXPECT_EQ(heliograph({"status", "../x"}).exit_code, 2);
     EXPECT_EQ(heliograph({"list", "--url", "gopher://x"}).exit_code, 2);
+    EXPECT_EQ(heliograph({"list", "--state", "bogus"}).exit_code, 2);
 }
 
 TEST(Heliograph, SaysThatNoServiceAnswersWith4)
