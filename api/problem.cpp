@@ -140,8 +140,11 @@ ProblemDetails problem_from_faults(int status, std::string code, std::vector<Pro
         const Problem& first = errors.front();
         const std::string said = (first.pointer.empty() ? "" : shortened(first.pointer, 200) + ": ") +
                                  shortened(first.detail, 400);
-        problem.detail =
-            errors.size() == 1 ? said : std::to_string(errors.size()) + " faults; first: " + said;
+        // The last line of a long list is no fault: it counts those that are not in it.
+        const bool more = errors.back().code == "more_faults";
+        const std::string count =
+            more ? "more than " + std::to_string(errors.size() - 1) : std::to_string(errors.size());
+        problem.detail = errors.size() == 1 ? said : count + " faults; first: " + said;
     }
     problem.errors = std::move(errors);
     return problem;

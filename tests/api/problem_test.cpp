@@ -75,4 +75,14 @@ TEST(ProblemDetails, SurviveBytesThatAreNotUtf8)
     EXPECT_TRUE(nlohmann::json::accept(text));
 }
 
+TEST(Problem, DoesNotCountTheLineThatCounts)
+{
+    const auto problem =
+        api::problem_from_faults(422,
+                                 "invalid_scene",
+                                 {{"/a", "wrong_type", "expected a number"},
+                                  {"", "more_faults", "4000 more faults are not listed here"}});
+    EXPECT_EQ(problem.detail, "more than 1 faults; first: /a: expected a number");
+}
+
 } // namespace
