@@ -14,7 +14,7 @@ namespace renderer::HWY_NAMESPACE {
 namespace {
 
 // As SlabRay::meets, operation for operation.
-std::uint32_t enter_box(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest)
+inline std::uint32_t enter_box(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest)
 {
     const hn::CappedTag<double, BoxRays::kRays> d;
     std::uint32_t inside = 0;

@@ -32,7 +32,7 @@ HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask)
 }
 
 // What can wait at most: a level leaves all but one child behind.
-constexpr unsigned kMostWaiting = (WideNode::kChildren - 1) * kMaxBvhDepth + 1;
+inline constexpr unsigned kMostWaiting = (WideNode::kChildren - 1) * kMaxBvhDepth + 1;
 
 // The children whose boxes the ray may enter before `end`: where, and which.
 struct Entered {

@@ -21,7 +21,7 @@ namespace {
 
 using Doubles = hn::CappedTag<double, RayRun::kRays>;
 using Floats = hn::CappedTag<float, RayRun::kRays>;
-constexpr unsigned kDoubles = hn::MaxLanes(Doubles()), kFloats = hn::MaxLanes(Floats());
+inline constexpr unsigned kDoubles = hn::MaxLanes(Doubles()), kFloats = hn::MaxLanes(Floats());
 
 // What the rays of a run have in common, or not: bit i tells of ray i.
 struct RunKind {
