@@ -117,7 +117,7 @@ private:
     template <typename... Ts>
     [[nodiscard]] Json written(const std::variant<Ts...>& value) const
     {
-        Json json = std::visit([this](const auto& alternative) { return written(alternative); }, value);
+        Json json = std::visit([this](const auto& alternative) { return this->written(alternative); }, value);
         json["type"] = name_of(words_for<std::variant<Ts...>>(), static_cast<int>(value.index()));
         return json;
     }

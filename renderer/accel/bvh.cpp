@@ -85,7 +85,8 @@ private:
             const std::optional<std::size_t> left = split_at_midpoint(run, bounds);
             return left ? *left : split_at_median(run, bounds);
         }
-        const auto leaf_tests = static_cast<double>((run.size() + options_.block - 1) / options_.block);
+        const std::size_t blocks = (run.size() + options_.block - 1) / options_.block;
+        const auto leaf_tests = static_cast<double>(blocks);
         const double limit =
             leaf_allowed ? leaf_tests - options_.node_cost : std::numeric_limits<double>::infinity();
         const std::optional<SplitChoice> choice = split_by_sah(run, bounds, options_.block, limit);

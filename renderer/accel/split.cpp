@@ -135,7 +135,8 @@ struct CostModel {
     template <typename T>
     double side(const Bounds3<T>& box, std::uint32_t count) const
     {
-        return measure(box, inverse_extent) * ((count + block - 1) / block) / whole;
+        const std::uint32_t blocks = (count + block - 1) / block;
+        return measure(box, inverse_extent) * blocks / whole;
     }
 };
 

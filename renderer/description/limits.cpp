@@ -9,7 +9,7 @@ namespace renderer {
 namespace {
 
 constexpr std::uint64_t kMostBytes = 1ull << 50;
-constexpr std::uint64_t kDay_s = 24 * 3600;
+constexpr std::uint64_t kDay_s = 24u * 3600u;
 constexpr std::uint64_t kMostThreads = 4096; // each waiter holds one
 constexpr std::uint64_t kDeepestJson = 512;  // what walks a tree of JSON calls itself for every floor
 
@@ -51,7 +51,7 @@ std::span<const LimitEntry> limit_table()
         LimitEntry{"waiters", &Limits::waiters, "", "requests that wait at the same time", kMostThreads},
         LimitEntry{"header_s", &Limits::header_s, "s", "time to send a request's header", kDay_s},
         LimitEntry{"idle_body_s", &Limits::idle_body_s, "s", "silence within a request's body", kDay_s},
-        LimitEntry{"retention_s", &Limits::retention_s, "s", "how long results are kept", 100 * 365 * kDay_s},
+        LimitEntry{"retention_s", &Limits::retention_s, "s", "how long results are kept", 36500 * kDay_s},
         LimitEntry{"import_memory_bytes",
                    &Limits::import_memory_bytes,
                    "bytes",
