@@ -19,7 +19,7 @@ namespace {
 
 std::filesystem::path import_program_of(const ServiceOptions& options)
 {
-    const std::filesystem::path program =
+    std::filesystem::path program =
         options.import_program.empty()
             ? std::filesystem::read_symlink("/proc/self/exe").parent_path() / "heliograph-import"
             : options.import_program;

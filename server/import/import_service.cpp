@@ -195,7 +195,7 @@ ImportService::ImportService(std::filesystem::path program,
 ImportService::~ImportService() = default;
 
 std::variant<PreparedAsset, ImportFailure>
-ImportService::import(const ImportRequest& request, renderer::ThreadPool& pool, std::stop_token stop)
+ImportService::import(const ImportRequest& request, renderer::ThreadPool& pool, const std::stop_token& stop)
 try {
     using Answer = std::variant<PreparedAsset, ImportFailure>;
     const auto split = static_cast<std::size_t>(request.split);
@@ -237,7 +237,7 @@ std::variant<std::monostate, ImportFailure> ImportService::known_failure(const I
     return std::monostate();
 }
 
-std::optional<api::AssetInfo> ImportService::info(const std::string& digest, std::stop_token stop)
+std::optional<api::AssetInfo> ImportService::info(const std::string& digest, const std::stop_token& stop)
 {
     const std::uint64_t bytes = state_->blobs.size(kAsset, digest).value_or(0);
     const auto answer = [&](const KnownImport& known) -> std::optional<api::AssetInfo> {

@@ -56,12 +56,12 @@ public:
 
     // Cached or imported now. Nothing in the variant's first if `stop` was requested (mesh is null).
     std::variant<PreparedAsset, ImportFailure>
-    import(const ImportRequest& request, renderer::ThreadPool& pool, std::stop_token stop);
+    import(const ImportRequest& request, renderer::ThreadPool& pool, const std::stop_token& stop);
     // A fault known from an earlier import of this very request; no work is done. For checks at POST.
     std::variant<std::monostate, ImportFailure> known_failure(const ImportRequest& request) const;
     // What GET /v1/assets/{digest}/info tells; imports (without building a BVH) if not yet known. Nothing if
     // `stop` was requested.
-    std::optional<api::AssetInfo> info(const std::string& digest, std::stop_token stop);
+    std::optional<api::AssetInfo> info(const std::string& digest, const std::stop_token& stop);
     // The same if it is known; no work is done.
     std::optional<api::AssetInfo> known_info(const std::string& digest) const;
 

@@ -110,6 +110,8 @@ bool parse(const char* word, std::uint64_t& value)
 
 } // namespace
 
+// What throws here ends this process alone, which the service tells as a crash.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int count, char** words)
 {
     renderer::Limits limits;

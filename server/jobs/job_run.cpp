@@ -71,7 +71,7 @@ double aspect_of(const renderer::ImageSettings& image)
     return static_cast<double>(image.width_px) / image.height_px;
 }
 
-JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, renderer::RenderResult rendered)
+JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, const renderer::RenderResult& rendered)
 {
     std::vector<renderer::PngText> texts;
     for (auto& [keyword, text] :
@@ -131,7 +131,7 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     rendered->report.timing.prepare_s = prepare_s;
     const std::uint64_t non_finite = rendered->report.numerics.non_finite_samples;
     if (non_finite != 0 && fails_on(run.request, "non_finite")) return non_finite_problem(non_finite);
-    return picture_of(run, std::move(scene), std::move(*rendered));
+    return picture_of(run, std::move(scene), *rendered);
 }
 
 } // namespace server

@@ -36,12 +36,12 @@ std::chrono::seconds retention_of(const renderer::Limits& limits)
 } // namespace
 
 struct JobService::State {
-    State(Store& store_, BlobStore& blobs_, ImportService& imports_, const JobServiceOptions& options_)
-        : store(store_), blobs(blobs_), imports(imports_), options(options_),
-          keeper({store_, blobs_, live, pictures, options_.log, retention_of(options_.limits)}),
-          worker({store_, blobs_, imports_, live, keeper, estimate, options_.log, options_.limits},
-                 options_.threads),
-          stored_pictures({store_, blobs_, live, pictures, keeper, options_.log})
+    State(Store& the_store, BlobStore& the_blobs, ImportService& the_imports, const JobServiceOptions& given)
+        : store(the_store), blobs(the_blobs), imports(the_imports), options(given),
+          keeper({the_store, the_blobs, live, pictures, given.log, retention_of(given.limits)}),
+          worker({the_store, the_blobs, the_imports, live, keeper, estimate, given.log, given.limits},
+                 given.threads),
+          stored_pictures({the_store, the_blobs, live, pictures, keeper, given.log})
     {
     }
 

@@ -58,7 +58,7 @@ OutcomePtr LiveJobs::published_result(const Sharing& sharing) const
 OutcomePtr LiveJobs::add(const JobId& id, Sharing sharing)
 {
     const std::lock_guard lock(mutex_);
-    const OutcomePtr published = published_result(sharing);
+    OutcomePtr published = published_result(sharing);
     const bool joined = published != nullptr || (sharing.takes_results && is_under_way(sharing.render_key));
     Entry& entry = jobs_[id];
     entry.job.joined = joined;

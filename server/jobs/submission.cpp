@@ -33,7 +33,7 @@ std::string body_digest_of(const SubmitWords& words)
 {
     std::string text = digest_of(std::string_view(words.body));
     for (const auto& [name, digest] : words.part_digests)
-        text += '\n' + name + '\t' + digest;
+        text.append(1, '\n').append(name).append(1, '\t').append(digest);
     return digest_of(std::string_view(text));
 }
 

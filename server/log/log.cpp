@@ -52,8 +52,9 @@ spdlog::level::level_enum spdlog_level(LogLevel level)
 
 std::int64_t unix_ms()
 {
-    using namespace std::chrono;
-    return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+    namespace chrono = std::chrono;
+    return chrono::duration_cast<chrono::milliseconds>(chrono::system_clock::now().time_since_epoch())
+        .count();
 }
 
 } // namespace

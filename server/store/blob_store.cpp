@@ -134,7 +134,7 @@ private:
     std::string digest_;
 };
 
-BlobStore::BlobStore(std::filesystem::path folder) : state_(std::make_unique<State>(folder)) {}
+BlobStore::BlobStore(const std::filesystem::path& folder) : state_(std::make_unique<State>(folder)) {}
 
 BlobStore::~BlobStore() = default;
 

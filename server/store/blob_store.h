@@ -32,7 +32,7 @@ public:
     // Two name spaces: "assets" (uploads, least recently used and unreferenced go first) and "results".
     enum class Kind : std::uint8_t { asset, result };
 
-    explicit BlobStore(std::filesystem::path folder);
+    explicit BlobStore(const std::filesystem::path& folder);
     ~BlobStore();
     BlobStore(const BlobStore&) = delete;
     BlobStore& operator=(const BlobStore&) = delete;

@@ -12,7 +12,7 @@
 
 namespace server {
 
-DataFolder::DataFolder(std::filesystem::path folder) : path_(std::filesystem::absolute(std::move(folder)))
+DataFolder::DataFolder(const std::filesystem::path& folder) : path_(std::filesystem::absolute(folder))
 {
     if (!path_.has_filename()) path_ = path_.parent_path(); // "data/" is "data"
     make_folder(path_);

@@ -9,7 +9,7 @@ namespace server {
 
 class DataFolder {
 public:
-    explicit DataFolder(std::filesystem::path folder);
+    explicit DataFolder(const std::filesystem::path& folder);
     ~DataFolder();
     DataFolder(const DataFolder&) = delete;
     DataFolder& operator=(const DataFolder&) = delete;

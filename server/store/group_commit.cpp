@@ -26,7 +26,7 @@ bool is_storage_full(const std::exception_ptr& error)
 } // namespace
 
 GroupCommit::GroupCommit(std::unique_ptr<SqliteConnection> db)
-    : db_(std::move(db)), thread_([this](std::stop_token stop) { write_batches(std::move(stop)); })
+    : db_(std::move(db)), thread_([this](const std::stop_token& stop) { write_batches(stop); })
 {
 }
 
@@ -60,7 +60,7 @@ std::size_t GroupCommit::waiting() const
     return waiting_.size();
 }
 
-void GroupCommit::write_batches(std::stop_token stop)
+void GroupCommit::write_batches(const std::stop_token& stop)
 {
     std::unique_lock lock(mutex_);
     for (;;) {

@@ -48,7 +48,7 @@ private:
     };
     using Batch = std::vector<Request*>; // of callers who wait
 
-    void write_batches(std::stop_token stop);
+    void write_batches(const std::stop_token& stop);
     void commit(const Batch& batch);
     void apply(const Batch& batch);
     void apply_one(Request& request);

@@ -104,20 +104,21 @@ void GuardedServer::register_handlers(const Dispatch& dispatch)
         return HandlerResponse::Handled;
     }));
     // dispatch does not throw: this is for httplib itself, which would send what() as a header.
-    set_exception_handler(
-        [this](const httplib::Request& request, httplib::Response& response, std::exception_ptr error) {
-            response = {};
-            response.version = "HTTP/1.1";
-            response.status = 500;
-            try {
-                if (error) std::rethrow_exception(error);
-            } catch (const std::exception& e) {
-                const std::string id = request.get_header_value(kRequestId);
-                log_.write(LogLevel::error, "http_failure", {{"what", e.what()}, {"request_id", id}});
-            } catch (...) {
-                log_.write(LogLevel::error, "http_failure");
-            }
-        });
+    set_exception_handler([this](const httplib::Request& request,
+                                 httplib::Response& response,
+                                 const std::exception_ptr& error) {
+        response = {};
+        response.version = "HTTP/1.1";
+        response.status = 500;
+        try {
+            if (error) std::rethrow_exception(error);
+        } catch (const std::exception& e) {
+            const std::string id = request.get_header_value(kRequestId);
+            log_.write(LogLevel::error, "http_failure", {{"what", e.what()}, {"request_id", id}});
+        } catch (...) {
+            log_.write(LogLevel::error, "http_failure");
+        }
+    });
     set_post_routing_handler([](const httplib::Request& request, httplib::Response& response) {
         const std::string id = request.get_header_value(kRequestId);
         response.set_header(kRequestId, id.empty() ? make_job_id() : id);
