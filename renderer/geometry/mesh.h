@@ -23,7 +23,12 @@ struct MeshMaterial {
     Rgb diffuse{0.5f, 0.5f, 0.5f};
     Rgb specular{0, 0, 0};
     float shininess = 0;
-    std::vector<std::string> textures; // names of images it uses; not yet modelled, and reported as left out
+    // Not yet modelled, and reported as left out.
+    std::vector<std::string> textures; // names of images it uses
+    bool emits = false;
+    bool is_transparent = false;
+    bool is_metal = false;
+    bool has_roughness = false; // a physically based one, which is less than 1
 };
 
 // A named node of the file: a run of triangles.

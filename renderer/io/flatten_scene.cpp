@@ -5,11 +5,13 @@
 #include "renderer/io/triangulate.h"
 #include "renderer/math/affine.h"
 
+#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,6 +30,34 @@ Affine3 affine(const aiMatrix4x4& m)
     out.rows = {Vec3d{m.a1, m.a2, m.a3}, Vec3d{m.b1, m.b2, m.b3}, Vec3d{m.c1, m.c2, m.c3}};
     out.translation = {m.a4, m.b4, m.c4};
     return out;
+}
+
+float factor_of(const aiMaterial& from, float otherwise, const char* key, unsigned type, unsigned index)
+{
+    ai_real value = otherwise;
+    return from.Get(key, type, index, value) == AI_SUCCESS ? value : otherwise;
+}
+
+// glTF ignores alpha unless alphaMode says otherwise; many files say BLEND of what is wholly opaque.
+bool is_transparent(const aiMaterial& from)
+{
+    if (factor_of(from, 0, AI_MATKEY_TRANSMISSION_FACTOR) > 0) return true;
+    aiString mode;
+    if (from.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != AI_SUCCESS || std::string_view(mode.C_Str()) == "OPAQUE")
+        return false;
+    return factor_of(from, 1, AI_MATKEY_OPACITY) < 1 || from.GetTextureCount(aiTextureType_BASE_COLOR) > 0 ||
+           from.GetTextureCount(aiTextureType_DIFFUSE) > 0;
+}
+
+// What is not modelled, to be told.
+void take_left_out(const aiMaterial& from, MeshMaterial& to)
+{
+    aiColor4D light;
+    to.emits = from.Get(AI_MATKEY_COLOR_EMISSIVE, light) == AI_SUCCESS &&
+               (light.r > 0 || light.g > 0 || light.b > 0);
+    to.is_transparent = is_transparent(from);
+    to.is_metal = factor_of(from, 0, AI_MATKEY_METALLIC_FACTOR) > 0;
+    to.has_roughness = factor_of(from, 1, AI_MATKEY_ROUGHNESS_FACTOR) < 1;
 }
 
 // One of assimp's meshes, made ready once, placed as often as nodes name it.
@@ -131,6 +161,8 @@ void Flattener::materials()
             to.diffuse = {std::clamp(color.r, 0.0f, 1.0f),
                           std::clamp(color.g, 0.0f, 1.0f),
                           std::clamp(color.b, 0.0f, 1.0f)};
+        if (i + 1 < scene_.mNumMaterials)
+            take_left_out(from, to); // not of assimp's own, which would be metal
         for (int type = aiTextureType_NONE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
             aiString name;
             if (from.GetTexture(static_cast<aiTextureType>(type), 0, &name) != AI_SUCCESS) continue;

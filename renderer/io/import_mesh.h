@@ -32,7 +32,7 @@ struct ImportedMesh {
     Mesh mesh;
     std::string format;                    // "obj", "ply", "stl", "gltf", "glb"
     std::vector<std::string> opened_files; // every other file that was asked for and found, sorted
-    std::vector<std::string> notes;        // "material file x.mtl is not among the job's files", ...
+    std::vector<std::string> notes;        // "material file x.mtl did not come with the mesh ...", ...
 };
 
 // Bytes of a file by name, or nothing if there is none. The span lives as long as the import.

@@ -94,7 +94,9 @@ ImportFault assimp_fault(const Assimp::Importer& importer, const std::string& mi
     } catch (...) { // anything else is what GetErrorString says
     }
     if (!missing.empty())
-        return {"missing_file", "the glTF names " + quoted(missing) + ", which is not among the job's files"};
+        return {"missing_file",
+                "the glTF names " + quoted(missing) +
+                    ", which did not come with it: a job names it in its files"};
     return {"malformed", "the glTF cannot be read: " + clean_utf8(importer.GetErrorString())};
 }
 

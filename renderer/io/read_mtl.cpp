@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace renderer {
 
@@ -62,10 +63,16 @@ bool take_color(std::string_view line, Rgb& color)
     return true;
 }
 
-bool take_shininess(std::string_view line, float& shininess)
+std::optional<float> take_number(std::string_view line)
 {
     const auto value = take_float(line);
-    if (!value || !std::isfinite(*value) || *value < 0) return false;
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+bool take_shininess(std::string_view line, float& shininess)
+{
+    const auto value = take_number(line);
+    if (!value || *value < 0) return false;
     shininess = *value;
     return true;
 }
@@ -76,6 +83,134 @@ bool is_map(std::string_view word)
            word == "refl" || word == "norm";
 }
 
+// Whether the material's line has a value beyond `least`: for what is told and not modelled.
+bool take_above(std::string_view line, float least, bool& above)
+{
+    const auto value = take_number(line);
+    if (value) above = *value > least;
+    return value.has_value();
+}
+
+bool take_below(std::string_view line, float most, bool& below)
+{
+    const auto value = take_number(line);
+    if (value) below = *value < most;
+    return value.has_value();
+}
+
+bool take_dissolve(std::string_view line, bool& is_transparent)
+{
+    std::string_view rest = line;
+    if (take_word(rest) == "-halo") line = rest;
+    return take_below(line, 1, is_transparent);
+}
+
+bool take_emission(std::string_view line, bool& emits)
+{
+    Rgb light;
+    if (!take_color(line, light)) return false;
+    emits = !is_black(light);
+    return true;
+}
+
+class MtlReader {
+public:
+    MtlReader(std::string_view text,
+              std::string_view file,
+              std::vector<MeshMaterial>& materials,
+              std::vector<std::string>& notes)
+        : lines_(text, true), file_(file), materials_(materials), notes_(notes)
+    {
+    }
+    bool read();
+
+private:
+    bool statement(std::string_view word, std::string_view rest);
+    bool property(std::string_view word, std::string_view rest);
+    void end_material();
+    void note(const std::string& what)
+    {
+        if (notes_.size() < kMostNotes) notes_.push_back("material file " + what);
+    }
+
+    Lines lines_;
+    std::string_view file_;
+    std::vector<MeshMaterial>& materials_;
+    std::vector<std::string>& notes_;
+    MeshMaterial* material_ = nullptr;
+    bool has_color_ = false;
+    std::size_t colorless_ = 0;
+    std::string colorless_names_; // of the first few
+};
+
+// False where the line cannot be read.
+bool MtlReader::property(std::string_view word, std::string_view rest)
+{
+    MeshMaterial& m = *material_;
+    if (word == "Kd") {
+        const bool good = take_color(rest, m.diffuse);
+        has_color_ = has_color_ || good;
+        return good;
+    }
+    if (word == "Ks") return take_color(rest, m.specular);
+    if (word == "Ns") return take_shininess(rest, m.shininess);
+    if (word == "Ke") return take_emission(rest, m.emits);
+    if (word == "d") return take_dissolve(rest, m.is_transparent);
+    if (word == "Tr") return take_above(rest, 0, m.is_transparent);
+    if (word == "Pm") return take_above(rest, 0, m.is_metal);
+    if (word == "Pr") return take_below(rest, 1, m.has_roughness);
+    if (is_map(word) && m.textures.size() < 64) {
+        const std::string name = clean_utf8(texture_name(rest));
+        if (!name.empty()) m.textures.push_back(name);
+    }
+    return true;
+}
+
+// Grey and not black: a material without a colour is one whose colour is not known. It is so too where a
+// texture would give the colour, which is nearer to most textures than white.
+void MtlReader::end_material()
+{
+    constexpr std::size_t kMostNames = 4;
+    if (!material_ || has_color_) return;
+    if (++colorless_ <= kMostNames)
+        colorless_names_ += (colorless_ > 1 ? ", " : "") + quoted(material_->name);
+    else if (colorless_ == kMostNames + 1)
+        colorless_names_ += ", ...";
+}
+
+bool MtlReader::statement(std::string_view word, std::string_view rest)
+{
+    if (!material_) return word != "Kd" && word != "Ks" && word != "Ns";
+    return property(word, rest);
+}
+
+bool MtlReader::read()
+{
+    constexpr std::size_t kMostBadLines = 8; // told one by one: there must be room for other notes
+    std::size_t bad_lines = 0;
+    while (const auto line = lines_.next()) {
+        std::string_view rest = *line;
+        const std::string_view word = take_word(rest);
+        if (word == "newmtl") {
+            end_material();
+            if (materials_.size() == kMostMaterials) return false;
+            material_ = &materials_.emplace_back();
+            material_->name = clean_utf8(trimmed(rest));
+            has_color_ = false;
+        } else if (!statement(word, rest) && ++bad_lines <= kMostBadLines) {
+            note(clean_utf8(file_) + ", line " + std::to_string(lines_.number()) + ": " +
+                 quoted(trimmed(*line)) + " cannot be read; the default stays");
+        }
+    }
+    end_material();
+    if (colorless_)
+        note(quoted(file_) + ": " + std::to_string(colorless_) +
+             (colorless_ == 1 ? " material has no readable Kd and is grey (0.5): "
+                              : " materials have no readable Kd and are grey (0.5): ") +
+             colorless_names_);
+    return true;
+}
+
 } // namespace
 
 bool read_mtl(std::string_view text,
@@ -83,33 +218,7 @@ bool read_mtl(std::string_view text,
               std::vector<MeshMaterial>& materials,
               std::vector<std::string>& notes)
 {
-    MeshMaterial* material = nullptr;
-    Lines lines(text, true);
-    while (const auto line = lines.next()) {
-        std::string_view rest = *line;
-        const std::string_view word = take_word(rest);
-        bool good = true;
-        if (word == "newmtl") {
-            if (materials.size() == kMostMaterials) return false;
-            materials.push_back({clean_utf8(trimmed(rest)), {}, {}, 0, {}});
-            material = &materials.back();
-        } else if (!material) {
-            good = word != "Kd" && word != "Ks" && word != "Ns";
-        } else if (word == "Kd") {
-            good = take_color(rest, material->diffuse);
-        } else if (word == "Ks") {
-            good = take_color(rest, material->specular);
-        } else if (word == "Ns") {
-            good = take_shininess(rest, material->shininess);
-        } else if (is_map(word) && material->textures.size() < 64) {
-            const std::string name = clean_utf8(texture_name(rest));
-            if (!name.empty()) material->textures.push_back(name);
-        }
-        if (!good && notes.size() < kMostNotes)
-            notes.push_back("material file " + clean_utf8(file) + ", line " + std::to_string(lines.number()) +
-                            ": " + quoted(trimmed(*line)) + " cannot be read; the default stays");
-    }
-    return true;
+    return MtlReader(text, file, materials, notes).read();
 }
 
 } // namespace renderer

@@ -1,7 +1,9 @@
-// read_mtl: the materials of a Wavefront MTL file, as far as they are modelled (Kd, Ks, Ns, texture names).
+// read_mtl: the materials of a Wavefront MTL file, as far as they are modelled (Kd, Ks, Ns), and whether they
+// have what is not (texture names, Ke, d, Tr, Pm, Pr).
 //
 // Errors  none but too many materials: a line that cannot be read is told in `notes`, of which there are
-//         kMostNotes at most, and leaves the default. Colours are brought into [0, 1].
+//         kMostNotes at most, and leaves the default. A material without a readable Kd is grey, with a note.
+//         Colours are brought into [0, 1].
 #pragma once
 
 #include "renderer/geometry/mesh.h"

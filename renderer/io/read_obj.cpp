@@ -207,8 +207,9 @@ ObjReader::Check ObjReader::material_files(std::string_view names)
             if (auto bad = material_file(name, text_of(*bytes))) return bad;
         } else if (missing_files_.size() < kMostNotes && result_.notes.size() < kMostNotes &&
                    missing_files_.emplace(name).second) {
-            result_.notes.push_back("material file " + quoted(name) +
-                                    " is not among the job's files; its materials are grey");
+            result_.notes.push_back(
+                "material file " + quoted(name) +
+                " did not come with the mesh (a job names it in its files); its materials are grey");
         }
     }
     return std::nullopt;
@@ -269,7 +270,7 @@ void ObjReader::finish_materials()
     for (std::uint32_t name : obj_.triangle_materials)
         result_.mesh.triangle_materials.push_back(name == ObjCorner::kNone ? number_of(nullptr)
                                                                            : number_by_name[name]);
-    if (grey) materials.insert(materials.begin() + *grey, MeshMaterial{"", {}, {}, 0, {}});
+    if (grey) materials.insert(materials.begin() + *grey, MeshMaterial{});
 }
 
 void ObjReader::finish_notes()

@@ -1,5 +1,6 @@
 #include "renderer/plan/choices.h"
 
+#include <set>
 #include <string>
 #include <variant>
 
@@ -13,6 +14,8 @@ struct Census {
     std::size_t mesh_objects = 0, rectangles = 0, disks = 0, boxes = 0, spheres = 0;
     std::size_t smooth = 0, flat_with_normals = 0, textured_meshes = 0;
     std::size_t diffuse = 0, phong_classic = 0, phong_normalized = 0, default_material = 0;
+    std::set<std::uint32_t> shown_meshes;                            // with materials of their own
+    std::size_t emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
     std::size_t point = 0, spot = 0, directional = 0;
     bool sky = false;
 };
@@ -52,6 +55,12 @@ void count_object(Census& c,
         return;
     }
     if (facts->has_textures) ++c.textured_meshes;
+    if (c.shown_meshes.insert(std::get<MeshShape>(object.shape).mesh).second) {
+        c.emissive += facts->emissive_materials;
+        c.transparent += facts->transparent_materials;
+        c.metal += facts->metal_materials;
+        c.rough += facts->rough_materials;
+    }
     ++(facts->has_specular ? c.phong_normalized : c.diffuse);
 }
 
@@ -98,6 +107,10 @@ private:
     {
         out_.skipped.push_back({std::move(name), std::move(why)});
     }
+    void skip_if(std::size_t count, const char* name, const std::string& why)
+    {
+        if (count != 0) skip(name, why);
+    }
     void use_if(std::size_t count, const char* name, const std::string& why)
     {
         if (count != 0) use(name, why);
@@ -139,10 +152,28 @@ private:
                "phong_classic",
                of(c_.phong_classic, "object") +
                    " of classic Phong, which may reflect more light than it gets");
-        if (c_.textured_meshes != 0)
-            skip("textures",
-                 of(c_.textured_meshes, "object") +
-                     " with textures of the mesh's own: their plain colours are used");
+        left_out_of_meshes();
+    }
+
+    void left_out_of_meshes()
+    {
+        skip_if(c_.textured_meshes,
+                "textures",
+                of(c_.textured_meshes, "object") +
+                    " with textures of the mesh's own: their plain colours are used");
+        skip_if(c_.emissive,
+                "emission",
+                of(c_.emissive, "material") + " of meshes would shine: surfaces give no light, lights do");
+        skip_if(c_.transparent,
+                "transparency",
+                of(c_.transparent, "material") + " of meshes would let light through: all are opaque");
+        skip_if(c_.metal,
+                "metal",
+                of(c_.metal, "material") + " of meshes would reflect as metal: their colours are diffuse");
+        skip_if(c_.rough,
+                "roughness",
+                of(c_.rough, "material") +
+                    " of meshes with a roughness below 1: they are shaded without its highlight");
     }
 
     void lights()

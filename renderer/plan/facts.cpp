@@ -14,6 +14,15 @@ Bounds3f part_bounds(const Mesh& mesh, const MeshPart& part)
     return bounds;
 }
 
+std::vector<bool> used_materials(const Mesh& mesh)
+{
+    std::vector<bool> used(mesh.materials.size());
+    if (mesh.triangle_materials.empty() && !used.empty()) used[0] = true;
+    for (const std::uint16_t material : mesh.triangle_materials)
+        if (material < used.size()) used[material] = true;
+    return used;
+}
+
 } // namespace
 
 MeshFacts facts_of(const Mesh& mesh)
@@ -28,6 +37,15 @@ MeshFacts facts_of(const Mesh& mesh)
     for (const MeshMaterial& material : mesh.materials) {
         facts.has_textures = facts.has_textures || !material.textures.empty();
         facts.has_specular = facts.has_specular || (!is_black(material.specular) && material.shininess > 0);
+    }
+    const std::vector<bool> used = used_materials(mesh);
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        const MeshMaterial& material = mesh.materials[i];
+        facts.emissive_materials += material.emits;
+        facts.transparent_materials += material.is_transparent;
+        facts.metal_materials += material.is_metal;
+        facts.rough_materials += material.has_roughness;
     }
     for (const auto& [name, part] : mesh.parts_by_name())
         facts.parts.emplace(name,

@@ -34,7 +34,9 @@ struct MeshFacts {
     bool has_normals = false;
     bool has_materials = false;
     bool has_textures = false;
-    bool has_specular = false;              // a material of its own shines: it is shaded as normalised Phong
+    bool has_specular = false; // a material of its own shines: it is shaded as normalised Phong
+    // Materials that some triangle has, by what of theirs is not modelled.
+    std::uint32_t emissive_materials = 0, transparent_materials = 0, metal_materials = 0, rough_materials = 0;
     std::map<std::string, PartFacts> parts; // by name; of several of one name, the first
 };
 MeshFacts facts_of(const Mesh& mesh);

@@ -70,6 +70,8 @@ public:
         add(m.specular);
         add(m.shininess);
         add(m.textures);
+        for (const bool is : {m.emits, m.is_transparent, m.is_metal, m.has_roughness})
+            add(static_cast<std::uint8_t>(is));
     }
     void add(const renderer::MeshPart& p)
     {
@@ -97,6 +99,13 @@ public:
         rest_ = rest_.subspan(sizeof value);
         return true;
     }
+    bool take_flag(bool& flag)
+    {
+        std::uint8_t byte = 0;
+        if (!take(byte) || byte > 1) return false;
+        flag = byte == 1;
+        return true;
+    }
     bool take(renderer::Rgb& color) { return take(color.r) && take(color.g) && take(color.b); }
     bool take(std::string& text)
     {
@@ -117,7 +126,9 @@ public:
     }
     bool take(renderer::MeshMaterial& m)
     {
-        return take(m.name) && take(m.diffuse) && take(m.specular) && take(m.shininess) && take(m.textures);
+        return take(m.name) && take(m.diffuse) && take(m.specular) && take(m.shininess) && take(m.textures) &&
+               take_flag(m.emits) && take_flag(m.is_transparent) && take_flag(m.is_metal) &&
+               take_flag(m.has_roughness);
     }
     bool take(renderer::MeshPart& p)
     {

@@ -32,6 +32,20 @@ std::string with_nodes(const std::string& nodes, const std::string& roots = "0")
     return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes + "]}";
 }
 
+// One triangle in a data: URI. `node` and `primitive` are further members, each with a comma before it;
+// `more` likewise of the file.
+std::string
+triangle_gltf(const std::string& node, const std::string& primitive = "", const std::string& more = "")
+{
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+        "nodes":[{"mesh":0)" +
+           node + R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0})" + primitive + R"(}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}])" +
+           more + "}";
+}
+
 TEST(ReadGltf, PlacesEveryNodeWithinItsParentAndKeepsSubtreesTogether)
 {
     const auto result =
@@ -78,14 +92,10 @@ TEST(ReadGltf, TakesBaseColoursAsDiffuse)
     ASSERT_EQ(mesh.triangle_materials.size(), mesh.triangles.size());
 }
 
-// One triangle in a data: URI, by a node of negative scale: the winding must turn with it.
+// By a node of negative scale: the winding must turn with it.
 TEST(ReadGltf, TurnsTheWindingOfMirroredNodesAndReadsDataUris)
 {
-    const std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-        "nodes":[{"mesh":0,"scale":[-1,1,1]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
-        "bufferViews":[{"buffer":0,"byteLength":36}],
-        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+    const std::string json = triangle_gltf(R"(,"scale":[-1,1,1])");
     const auto result = import_text("t.gltf", json);
     ASSERT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
     const renderer::Mesh& mesh = std::get<ImportedMesh>(result).mesh;
@@ -95,6 +105,36 @@ TEST(ReadGltf, TurnsTheWindingOfMirroredNodesAndReadsDataUris)
     EXPECT_EQ(cross(corner(1) - corner(0), corner(2) - corner(0)), (renderer::Vec3d{0, 0, 1}));
     EXPECT_TRUE(mesh.normals.empty());
     EXPECT_TRUE(mesh.materials.empty());
+}
+
+// e emits, t transparent, m metal, r roughness: of the first material, of one triangle.
+std::string traits_of(const std::string& material)
+{
+    const auto result =
+        import_text("t.gltf", triangle_gltf("", R"(,"material":0)", R"(,"materials":[{)" + material + "}]"));
+    if (const auto* fault = std::get_if<ImportFault>(&result)) return fault->detail;
+    const auto& materials = std::get<ImportedMesh>(result).mesh.materials;
+    if (materials.empty()) return "none";
+    const renderer::MeshMaterial& m = materials[0];
+    return std::string(m.emits ? "e" : "") + (m.is_transparent ? "t" : "") + (m.is_metal ? "m" : "") +
+           (m.has_roughness ? "r" : "");
+}
+
+TEST(ReadGltf, KeepsWhatItsMaterialsHaveThatIsNotModelled)
+{
+    const auto with = [](const std::string& pbr, const std::string& more = "") {
+        return traits_of("\"pbrMetallicRoughness\":{" + pbr + "}" + more);
+    };
+    const std::string plain = R"("metallicFactor":0)";
+    EXPECT_EQ(with(plain), "");
+    EXPECT_EQ(with(""), "m") << "the format's default is metal";
+    EXPECT_EQ(with(R"("metallicFactor":0.5,"roughnessFactor":0.2)"), "mr");
+    EXPECT_EQ(with(plain, R"(,"emissiveFactor":[0,0,0.1])"), "e");
+    const std::string thin = plain + R"(,"baseColorFactor":[1,1,1,0.4])";
+    EXPECT_EQ(with(thin, R"(,"alphaMode":"BLEND")"), "t");
+    EXPECT_EQ(with(thin, R"(,"alphaMode":"MASK")"), "t");
+    EXPECT_EQ(with(thin), "") << "alphaMode OPAQUE ignores alpha";
+    EXPECT_EQ(with(plain, R"(,"alphaMode":"BLEND")"), "") << "nothing of it is transparent";
 }
 
 TEST(GltfOutline, RefusesNodesThatAreNoTrees)

@@ -171,12 +171,68 @@ TEST(ReadObj, TellsOfBadMaterialLinesNoMoreThanOfOthers)
     EXPECT_EQ(mesh_of(names + kSquare + "f 1 2 3\n", files).notes.size(), 16u);
 }
 
+TEST(ReadObj, MakesMaterialsWithoutAReadableColourGreyAndNamesThem)
+{
+    const Files files{{"a.mtl",
+                       "newmtl red\nnewmtl wood\nmap_Kd wood.png\nnewmtl odd\nKd bogus\n"
+                       "newmtl black\nKd 0 0 0\n"}};
+    const ImportedMesh result =
+        mesh_of("mtllib a.mtl\n" + kSquare + "usemtl red\nf 1 2 3\nusemtl gone\nf 1 3 4\n", files);
+    const renderer::Rgb grey{0.5f, 0.5f, 0.5f};
+    ASSERT_EQ(result.mesh.materials.size(), 5u);
+    for (const std::size_t i : {0u, 1u, 2u, 4u})
+        EXPECT_EQ(result.mesh.materials[i].diffuse, grey) << result.mesh.materials[i].name;
+    EXPECT_EQ(result.mesh.materials[3].diffuse, (renderer::Rgb{0, 0, 0})); // said, so kept
+    EXPECT_THAT(result.notes,
+                testing::ElementsAre(testing::HasSubstr("line 5"),
+                                     "material file \"a.mtl\": 3 materials have no readable Kd and are grey "
+                                     "(0.5): \"red\", \"wood\", \"odd\"",
+                                     testing::HasSubstr("\"gone\"")));
+}
+
+TEST(ReadObj, ReportsAMaterialWithoutColourWhereverItStandsInItsFile)
+{
+    const std::string text = "mtllib a.mtl\n" + kSquare + "usemtl red\nf 1 2 3\n";
+    EXPECT_THAT(mesh_of(text, {{"a.mtl", "newmtl red"}}).notes,
+                testing::ElementsAre(
+                    "material file \"a.mtl\": 1 material has no readable Kd and is grey (0.5): \"red\""));
+    std::string many = "newmtl blue\nKd 0 0 1\n";
+    for (int i = 0; i < 100; ++i)
+        many += "newmtl m" + std::to_string(i) + "\n";
+    const ImportedMesh result = mesh_of(text, {{"a.mtl", many + "newmtl red\nKd 1 0 0\n"}});
+    EXPECT_THAT(result.notes, testing::ElementsAre(testing::HasSubstr("100 materials")));
+    EXPECT_LT(result.notes[0].size(), 200u);
+}
+
+TEST(ReadObj, KeepsWhatItsMaterialsHaveThatIsNotModelled)
+{
+    const Files files{{"a.mtl",
+                       "newmtl plain\nKd 1 1 1\nKe 0 0 0\nd 1\nTr 0\nPm 0\n"
+                       "newmtl lamp\nKd 1 1 1\nKe 8 8 7\n"
+                       "newmtl glass\nKd 1 1 1\nd -halo 0.3\n"
+                       "newmtl water\nKd 1 1 1\nTr 0.7\n"
+                       "newmtl gold\nKd 1 1 1\nPm 0.9\nPr 0.2\n"}};
+    const auto materials = mesh_of("mtllib a.mtl\n" + kSquare + "f 1 2 3\n", files).mesh.materials;
+    ASSERT_GE(materials.size(), 5u);
+    const auto traits = [&](std::size_t i) {
+        const renderer::MeshMaterial& m = materials[i];
+        return std::string(m.emits ? "e" : "") + (m.is_transparent ? "t" : "") + (m.is_metal ? "m" : "") +
+               (m.has_roughness ? "r" : "");
+    };
+    EXPECT_EQ(traits(0), "");
+    EXPECT_EQ(traits(1), "e");
+    EXPECT_EQ(traits(2), "t");
+    EXPECT_EQ(traits(3), "t");
+    EXPECT_EQ(traits(4), "mr");
+}
+
 TEST(ReadObj, SaysWhenItsMtlIsMissing)
 {
     const ImportedMesh result = mesh_of("mtllib gone.mtl\nusemtl red\n" + kSquare + "f 1 2 3\n");
     EXPECT_TRUE(result.mesh.materials.empty());
     EXPECT_TRUE(result.mesh.triangle_materials.empty());
-    EXPECT_THAT(result.notes, testing::ElementsAre(testing::HasSubstr("\"gone.mtl\" is not among")));
+    EXPECT_THAT(result.notes,
+                testing::ElementsAre(testing::HasSubstr("\"gone.mtl\" did not come with the mesh")));
 }
 
 TEST(ReadObj, MakesEveryObjectOneRunOfTriangles)

@@ -319,3 +319,48 @@ TEST(MakePlan, FindsAPartAmongAsManyAsThereAreObjects)
     }
     EXPECT_TRUE(faults_of(scene, {facts}).empty());
 }
+
+TEST(MakePlan, CountsTheMaterialsWhoseLightTransparencyOrMetalIsLeftOut)
+{
+    MeshFacts facts = cube_facts();
+    facts.has_materials = true;
+    facts.emissive_materials = 1;
+    facts.transparent_materials = 2;
+    facts.metal_materials = 3;
+    facts.rough_materials = 4;
+    SceneDescription scene = one_mesh();
+    scene.objects.push_back(scene.objects[0]); // the same mesh again: the same materials
+    const auto why = [](const Plan& plan, const std::string& name) {
+        for (const ModelChoice& choice : plan.models.skipped)
+            if (choice.name == name) return choice.why;
+        return std::string();
+    };
+    const Plan plan = plan_of(scene, {facts});
+    EXPECT_THAT(why(plan, "emission"), StartsWith("1 material "));
+    EXPECT_THAT(why(plan, "transparency"), StartsWith("2 materials "));
+    EXPECT_THAT(why(plan, "metal"), StartsWith("3 materials "));
+    EXPECT_THAT(why(plan, "roughness"), StartsWith("4 materials "));
+
+    scene.materials.push_back({"own", renderer::DiffuseMaterial{}});
+    for (ObjectDescription& object : scene.objects)
+        object.material = 0;
+    for (const char* name : {"emission", "transparency", "metal", "roughness"})
+        EXPECT_EQ(why(plan_of(scene, {facts}), name), "") << "the mesh's own materials are not shown";
+}
+
+TEST(FactsOf, CountsOnlyMaterialsThatATriangleHas)
+{
+    renderer::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 1, 2}};
+    mesh.materials.resize(3);
+    for (renderer::MeshMaterial& material : mesh.materials)
+        material.emits = material.is_transparent = material.is_metal = material.has_roughness = true;
+    EXPECT_EQ(renderer::facts_of(mesh).emissive_materials, 1u); // none given: all have the first
+    mesh.triangle_materials = {2, 0};
+    const MeshFacts facts = renderer::facts_of(mesh);
+    EXPECT_EQ(facts.emissive_materials, 2u);
+    EXPECT_EQ(facts.transparent_materials, 2u);
+    EXPECT_EQ(facts.metal_materials, 2u);
+    EXPECT_EQ(facts.rough_materials, 2u);
+}

@@ -25,7 +25,8 @@ ImportedAsset tetrahedron()
     mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     mesh.triangle_materials = {0, 1, 1, 0};
     mesh.materials = {{"red", {1, 0, 0}, {0, 0, 0}, 1, {"red.png", "bump.png"}},
-                      {"shiny", {}, {1, 1, 1}, 99, {}}};
+                      {"shiny", {}, {1, 1, 1}, 99, {}, true, false, true, false},
+                      {"glassy", {}, {}, 0, {}, false, true, false, true}};
     mesh.parts = {{"base", 0, 1}, {"sides", 1, 3}};
     return asset;
 }
@@ -65,7 +66,13 @@ TEST(FlatMesh, GivesBackWhatWasWritten)
     EXPECT_EQ(asset.mesh.uvs, before.mesh.uvs);
     EXPECT_EQ(asset.mesh.triangles, before.mesh.triangles);
     EXPECT_EQ(asset.mesh.triangle_materials, before.mesh.triangle_materials);
-    ASSERT_EQ(asset.mesh.materials.size(), 2u);
+    ASSERT_EQ(asset.mesh.materials.size(), 3u);
+    for (const std::size_t i : {1u, 2u}) {
+        EXPECT_EQ(asset.mesh.materials[i].emits, i == 1);
+        EXPECT_EQ(asset.mesh.materials[i].is_transparent, i == 2);
+        EXPECT_EQ(asset.mesh.materials[i].is_metal, i == 1);
+        EXPECT_EQ(asset.mesh.materials[i].has_roughness, i == 2);
+    }
     EXPECT_EQ(asset.mesh.materials[0].textures, before.mesh.materials[0].textures);
     EXPECT_EQ(asset.mesh.materials[1].specular, before.mesh.materials[1].specular);
     ASSERT_EQ(asset.mesh.parts.size(), 2u);
