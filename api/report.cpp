@@ -75,7 +75,8 @@ std::string write_report(const renderer::RenderReport& report,
         {"geometry",
          {{"triangles", geometry.triangles},
           {"instances", geometry.instances},
-          {"bvh_bytes", geometry.bvh_bytes}}}};
+          {"bvh_bytes", geometry.bvh_bytes}}},
+        {"notes", report.notes}};
     return text_of(json, true);
 }
 

@@ -26,7 +26,7 @@ struct RenderProgress {
 
 struct RenderResult {
     Film film;
-    RenderReport report; // timing.prepare_s is the caller's to fill
+    RenderReport report; // timing.prepare_s and notes are the caller's to fill
 };
 
 // Called from one of the pool's threads, one at a time, ten times a second at most, and once at the end.

@@ -40,7 +40,7 @@ LocalJob load_local_job(const JobSource& source, api::JobRequest request)
         MeshFile& file = std::get<MeshFile>(result);
         add_digests(job.request, i, file);
         for (const std::string& note : file.imported.notes)
-            job.notes.push_back(file.path.string() + ": " + note);
+            job.notes.push_back(job.request.scene.meshes[i].name + ": " + note);
         job.facts.push_back(renderer::facts_of(file.imported.mesh));
         job.meshes.push_back(std::move(file.imported.mesh));
     }

@@ -16,7 +16,7 @@ struct LocalJob {
     std::vector<renderer::Mesh> meshes; // as request.scene.meshes
     std::vector<renderer::MeshFacts> facts;
     renderer::AssumedScene assumed;
-    std::vector<std::string> notes; // of the importers, with the mesh's path
+    std::vector<std::string> notes; // of the importers, with the mesh's name
 };
 
 // Imports, fills in and checks against a plan without limits. Prints every fault and throws

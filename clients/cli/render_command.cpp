@@ -113,7 +113,8 @@ ExitCode render_command(const RenderOptions& options, const std::stop_token& sto
         for (const std::string& note : job.notes)
             std::fprintf(stderr, "note: %s\n", note.c_str());
 
-    const renderer::RenderResult result = render_job(job, options.quiet, stop);
+    renderer::RenderResult result = render_job(job, options.quiet, stop);
+    result.report.notes = job.notes;
     const std::vector<std::uint8_t> bytes = encode_picture(result, job.request, format);
     write_file(options.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!options.report.empty())

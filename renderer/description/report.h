@@ -53,6 +53,7 @@ struct RenderReport {
     TimingReport timing;
     GeometryReport geometry;
     std::uint32_t threads = 0;
+    std::vector<std::string> notes; // of the meshes' import, each with its mesh's name; the caller's to fill
 };
 
 } // namespace renderer

@@ -23,7 +23,20 @@ using Meshes = std::vector<std::shared_ptr<const renderer::PreparedMesh>>;
 struct Imported {
     Meshes meshes;
     std::vector<renderer::MeshFacts> facts; // one a mesh
+    std::vector<std::string> notes;         // of the importers, with the mesh's name
+    std::size_t more_notes = 0;             // that are counted only
 };
+
+void add_notes(const std::string& mesh, const std::vector<std::string>& notes, Imported& imported)
+{
+    constexpr std::size_t kMostNotes = 1000; // of a job: one mesh may go by thousands of names
+    for (const std::string& note : notes) {
+        if (imported.notes.size() < kMostNotes)
+            imported.notes.push_back(mesh + ": " + note);
+        else
+            ++imported.more_notes;
+    }
+}
 
 // A mesh that takes the scene over a limit is the last one: the job never holds more than that.
 std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobRun& run,
@@ -51,6 +64,7 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
         if (!asset.mesh) return StoppedRun{};
         imported.facts.push_back(renderer::facts_of(renderer::mesh_of(*asset.mesh)));
         imported.meshes.push_back(std::move(asset.mesh));
+        add_notes(scene.meshes[i].name, asset.notes, imported);
         renderer::add_mesh(budget, imported.facts.back());
         renderer::FaultList excess;
         renderer::check_budget(budget, tools.limits, excess);
@@ -63,6 +77,8 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
     }
     add_faults(failed, scene, faults);
     if (!faults.empty()) return faults_problem(faults.take());
+    if (imported.more_notes)
+        imported.notes.push_back("and " + std::to_string(imported.more_notes) + " notes more");
     return imported;
 }
 
@@ -129,6 +145,7 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     auto rendered = renderer::render(*prepared, plan, settings, tools.pool, run.stop, run.progress);
     if (!rendered) return StoppedRun{};
     rendered->report.timing.prepare_s = prepare_s;
+    rendered->report.notes = imported.notes;
     const std::uint64_t non_finite = rendered->report.numerics.non_finite_samples;
     if (non_finite != 0 && fails_on(run.request, "non_finite")) return non_finite_problem(non_finite);
     return picture_of(run, std::move(scene), *rendered);

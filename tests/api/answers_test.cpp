@@ -96,6 +96,7 @@ renderer::RenderReport a_report()
     report.numerics.precision = "float";
     report.accuracy.samples = 64;
     report.threads = 2;
+    report.notes = {"a.obj: 3 lines were left out"};
     return report;
 }
 
@@ -120,6 +121,7 @@ TEST(Report, TellsSamplesAskedForAndTaken)
     EXPECT_TRUE(report["accuracy"]["estimate"].is_null());
     EXPECT_EQ(report["models"]["used"][0]["name"], "direct");
     EXPECT_EQ(report["timing"]["threads"], 2);
+    EXPECT_EQ(report["notes"], json({"a.obj: 3 lines were left out"}));
 }
 
 TEST(Report, DoesNotClaimAMetTargetThatItCannotKnow)

@@ -58,6 +58,23 @@ TEST(Heliograph, TellsItsVersionAndItsExitCodes)
     EXPECT_THAT(heliograph({"submit", "--help"}).out, HasSubstr("HELIOGRAPH_URL"));
 }
 
+TEST(Heliograph, TellsWhatTheImportMissedOnStandardErrorAndInTheReport)
+{
+    const TempFolder folder;
+    folder.write("a.obj", "mtllib gone.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string scene = folder.write(
+        "scene.json",
+        R"({"scene":{"objects":[{"mesh":"a.obj"}]},"image":{"width":8,"height":8},"quality":{"samples":1}})");
+    const ProgramRun run =
+        heliograph({"render", scene, "-o", folder.file("out.png"), "--report", folder.file("report.json")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const std::string note = "a.obj: material file \"gone.mtl\" did not come with the mesh";
+    EXPECT_THAT(run.err, HasSubstr("note: " + note));
+    const auto notes = nlohmann::json::parse(bytes_of(folder.file("report.json"))).at("notes");
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0].get<std::string>(), StartsWith(note));
+}
+
 TEST(Heliograph, LetsTimeAsAFlagWinOverSamplesOfTheEnvironment)
 {
     const TempFolder folder;

@@ -47,6 +47,25 @@ TEST_P(JobService, ShowsTheSameBeforeAndAfterTheResultIsStored)
     EXPECT_EQ(api::write_job_view(after), api::write_job_view(before));
 }
 
+TEST_P(JobService, TellsInItsReportWhatTheImportMissedAndLeftOut)
+{
+    const auto node = open();
+    node->jobs.start();
+    const auto report = [&](const std::string& digest) {
+        const api::JobView done = tests::succeeded(*node, submit(*node, tests::mesh_job(digest)).id);
+        return nlohmann::json::parse(tests::expect<std::string>(node->jobs.report(done.id)));
+    };
+    const std::string with_gone_mtl =
+        tests::upload(*node, std::string("mtllib gone.mtl\nusemtl red\n") + tests::kTetrahedron);
+    for (int i = 0; i < 2; ++i) { // the second from the cache of meshes, or as the same render
+        const auto notes = report(with_gone_mtl).at("notes");
+        ASSERT_EQ(notes.size(), 1U);
+        EXPECT_EQ(notes[0].get<std::string>().find("mesh.obj: material file \"gone.mtl\" did not come"), 0U)
+            << notes;
+    }
+    EXPECT_TRUE(report(tests::upload(*node, tests::kTetrahedron)).at("notes").empty());
+}
+
 TEST_P(JobService, RendersAMeshThatWasUploaded)
 {
     const auto node = open();
