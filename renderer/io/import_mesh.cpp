@@ -46,7 +46,7 @@ Format format_of_content(std::string_view text)
     if (text[first] == '{' && text.find("\"asset\"") != text.npos) return Format::gltf;
     std::string_view start = text.substr(first, 1024);
     const std::string_view word = take_word(start);
-    if (lower_case(word.substr(0, 6)) == "solid" && start.find("facet") != start.npos)
+    if (lower_case(word.substr(0, 6)) == "solid" && lower_case(start).find("facet") != std::string::npos)
         return Format::stl_ascii;
     return looks_like_obj(text) ? Format::obj : Format::unknown;
 }

@@ -74,8 +74,9 @@ private:
 
 ObjReader::Check ObjReader::vertex(std::string_view rest)
 {
+    const std::string_view words = trimmed(rest);
     const auto p = take_vec3(rest);
-    if (!p) return unreadable("a vertex needs three numbers, not " + quoted(trimmed(rest)));
+    if (!p) return unreadable("a vertex needs three numbers, not " + quoted(words));
     if (!is_finite(*p))
         return fault("non_finite", "vertex " + std::to_string(obj_.positions.size() + 1) + " is not finite");
     obj_.positions.push_back(*p);

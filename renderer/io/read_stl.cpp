@@ -103,12 +103,13 @@ public:
         if (!expect("solid")) return std::move(fault_);
         words_.skip_line(); // its name
         for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
-            if (word == "facet") {
+            const std::string keyword = lower_case(word.substr(0, 16));
+            if (keyword == "facet") {
                 if (!facet()) return std::move(fault_);
-            } else if (word == "endsolid") {
+            } else if (keyword == "endsolid") {
                 closed_ = true;
                 words_.skip_line();
-            } else if (word == "solid") {
+            } else if (keyword == "solid") {
                 closed_ = false;
                 words_.skip_line();
             } else {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -113,6 +114,16 @@ TEST(ImportMesh, ReadsABinaryStlWhoseHeaderBeginsWithSolid)
     std::string stl = asset("knot.stl");
     stl.replace(0, 11, "solid facet");
     EXPECT_EQ(imported("knot.stl", stl).mesh.triangles.size(), 6144u);
+}
+
+TEST(ImportMesh, ReadsAnAsciiStlInCapitals)
+{
+    std::string stl = asset("knot_ascii.stl");
+    const std::size_t triangles = imported("knot_ascii.stl", stl).mesh.triangles.size();
+    for (char& c : stl)
+        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    EXPECT_EQ(imported("mesh", stl).mesh.triangles.size(), triangles);
+    EXPECT_EQ(imported("mesh.stl", stl).mesh.triangles.size(), triangles);
 }
 
 TEST(ImportMesh, NamesWhatItReadsWhenItKnowsNothingOfAFile)

@@ -273,6 +273,7 @@ TEST(ReadObj, NamesTheLineOfWhatIsWrong)
     EXPECT_THAT(fault_of("v 0 0 0\nv 0 nan 0\n").detail, testing::HasSubstr("vertex 2"));
     EXPECT_EQ(fault_of("v 0 1e39 0\n").code, "non_finite");
     EXPECT_EQ(fault_of("v 0 0\nv 0 0 0\n").code, "malformed");
+    EXPECT_THAT(fault_of("v 0x1p3 0 0\nv 0 0 0\n").detail, testing::HasSubstr("0x1p3 0 0"));
     EXPECT_EQ(fault_of(kSquare + "v 0 0").code, "truncated");
     EXPECT_EQ(fault_of(kSquare + "f 1 2").code, "truncated");
 }
