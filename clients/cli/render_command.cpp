@@ -65,7 +65,7 @@ std::shared_ptr<const renderer::Scene> prepare_scene(LocalJob& job,
         prepared.push_back(renderer::prepare_mesh(std::move(mesh), settings.acceleration.split, pool, stop));
         if (!prepared.back()) interrupted();
     }
-    return renderer::prepare(job.assumed, plan, prepared, settings, pool);
+    return renderer::prepare(job.assumed, plan, prepared, settings, pool, stop);
 }
 
 renderer::RenderResult render_job(LocalJob& job, bool quiet, const std::stop_token& stop)
