@@ -24,7 +24,7 @@ struct Limits {
     std::uint64_t waiters = 64;
     std::uint64_t header_s = 5;
     std::uint64_t idle_body_s = 30;
-    std::uint64_t retention_s = 24u * 3600u;
+    std::uint64_t retention_s = 86400; // a day
     std::uint64_t import_memory_bytes = 1ull << 30;
     std::uint64_t import_s = 30;
     std::uint64_t import_output_bytes = 512ull << 20;

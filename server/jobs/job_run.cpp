@@ -32,7 +32,7 @@ void add_notes(const std::string& mesh, const std::vector<std::string>& notes, I
     constexpr std::size_t kMostNotes = 1000; // of a job: one mesh may go by thousands of names
     for (const std::string& note : notes) {
         if (imported.notes.size() < kMostNotes)
-            imported.notes.push_back(mesh + ": " + note);
+            imported.notes.push_back(std::string(mesh).append(": ").append(note));
         else
             ++imported.more_notes;
     }
