@@ -9,6 +9,7 @@ namespace bench {
 
 void add_rays(CLI::App& app);
 void add_service(CLI::App& app);
+void add_terrain(CLI::App& app);
 void add_tiles(CLI::App& app);
 
 } // namespace bench

@@ -11,6 +11,7 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     bench::add_rays(app);
     bench::add_service(app);
+    bench::add_terrain(app);
     bench::add_tiles(app);
     try {
         app.parse(argc, argv);
