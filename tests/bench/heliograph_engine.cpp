@@ -1,6 +1,8 @@
 #include "renderer/accel/mesh_bvh.h"
 #include "renderer/parallel/thread_pool.h"
+#include "tests/bench/fresh_process.h"
 #include "tests/bench/ray_engine.h"
+#include "tests/bench/stopwatch.h"
 
 #include <algorithm>
 #include <bit>
@@ -24,22 +26,37 @@ public:
     {
         return std::string("Heliograph, ") + kernels_.name + (split_ == BvhSplit::sah ? "" : ", midpoint");
     }
+    std::string tree() const override
+    {
+        return split_ == BvhSplit::sah ? "Heliograph, sah" : "Heliograph, midpoint";
+    }
+    bool high_quality() const override { return false; }
+    BuildCost time_build(unsigned threads) const override
+    {
+        const std::vector<double> spent = in_fresh_process([&] {
+            ThreadPool pool(threads);
+            const Stopwatch watch(CLOCK_PROCESS_CPUTIME_ID);
+            const std::optional<MeshBvh> bvh = MeshBvh::build(mesh_, all_triangles(), split_, pool);
+            const Spent s = watch.spent();
+            return std::vector<double>{s.wall_s, s.cpu_s};
+        });
+        return {spent.at(0), spent.at(1)};
+    }
     void build() override
     {
-        bvh_.reset();
-        ThreadPool one(1);
-        bvh_ = MeshBvh::build(mesh_, {0, static_cast<std::uint32_t>(mesh_.triangles.size())}, split_, one);
+        ThreadPool every_core;
+        bvh_ = MeshBvh::build(mesh_, all_triangles(), split_, every_core);
     }
     std::uint64_t bytes() const override { return bvh_->size_bytes(); }
     std::uint64_t vertex_bytes() const override
     {
         return mesh_.positions.size() * sizeof(Vec3f) + mesh_.triangles.size() * sizeof(Triangle);
     }
-    std::uint64_t trace(const RaySet& set, std::span<const FloatRay> rays) const override
+    std::uint64_t trace(const RaySet& set, std::span<const FloatRay> rays, FoundHit* found) const override
     {
         std::uint64_t hits = 0;
         Ray run[MeshKernels::kMostRays];
-        MeshHit found[MeshKernels::kMostRays];
+        MeshHit met[MeshKernels::kMostRays];
         for (std::size_t first = 0; first < rays.size(); first += MeshKernels::kMostRays) {
             const std::size_t count = std::min<std::size_t>(MeshKernels::kMostRays, rays.size() - first);
             for (std::size_t i = 0; i < count; ++i) {
@@ -47,13 +64,21 @@ public:
                 run[i] = {to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
             }
             const std::span<const Ray> some(run, count);
-            hits += static_cast<std::uint64_t>(std::popcount(
-                set.occlusion ? bvh_->any_hits(some, kernels_) : bvh_->closest_hits(some, found, kernels_)));
+            const std::uint32_t hit =
+                set.occlusion ? bvh_->any_hits(some, kernels_) : bvh_->closest_hits(some, met, kernels_);
+            hits += static_cast<std::uint64_t>(std::popcount(hit));
+            if (found == nullptr) continue;
+            for (std::size_t i = 0; i < count; ++i) {
+                if ((hit >> i & 1u) == 0) continue;
+                found[first + i] = set.occlusion ? FoundHit{0, 0} : FoundHit{met[i].primitive, met[i].t};
+            }
         }
         return hits;
     }
 
 private:
+    TriangleRun all_triangles() const { return {0, static_cast<std::uint32_t>(mesh_.triangles.size())}; }
+
     const Mesh& mesh_;
     BvhSplit split_;
     MeshKernels kernels_;

@@ -93,6 +93,15 @@ View view_of_nave()
     return view;
 }
 
+View scaled(const View& view, double factor)
+{
+    View result = view;
+    result.eye = view.eye * factor;
+    result.at = view.at * factor;
+    result.light = view.light * factor;
+    return result;
+}
+
 std::vector<RaySet> make_ray_sets(const Mesh& mesh, const MeshBvh& bvh, const View& view)
 {
     RaySet primary = primary_rays(view), shadow{"shadow", true, true, {}},

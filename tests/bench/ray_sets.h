@@ -31,6 +31,7 @@ struct View {
 View view_of_object(const renderer::Bounds3f& bounds);
 // Along the nave of Sponza, which the museum stands in.
 View view_of_nave();
+View scaled(const View& view, double factor);
 
 struct RaySet {
     std::string name;

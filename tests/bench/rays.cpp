@@ -1,16 +1,18 @@
 // heliograph-bench rays: million rays a second, build time and memory on one mesh, beside Embree in the same
 // run.
-#include "renderer/io/import_mesh.h"
 #include "renderer/parallel/thread_pool.h"
+#include "tests/bench/bench_mesh.h"
 #include "tests/bench/commands.h"
 #include "tests/bench/ray_engine.h"
+#include "tests/bench/ray_report.h"
+#include "tests/bench/stopwatch.h"
+#include "tests/bench/terrain.h"
 
 #include <nlohmann/json.hpp>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -22,190 +24,216 @@ namespace bench {
 namespace {
 
 using namespace renderer;
-using Clock = std::chrono::steady_clock;
 
 struct Options {
-    std::string mesh, view = "object", peer, split = "sah";
+    std::string mesh, view = "object", peer, split = "sah", json;
     std::vector<std::string> only;
-    bool json = false, every_kernel = false;
-    unsigned threads = 1;
+    std::uint64_t terrain = 0; // triangles; 0: the mesh file
+    std::vector<double> diagonals{0};
+    std::vector<unsigned> threads{1};
+    bool table = false, every_kernel = false;
     int repeats = 5;
 };
 
-struct Column {
-    double million_per_s = 0;
-    std::uint64_t hits = 0, rays = 0;
+using Engines = std::vector<std::unique_ptr<RayEngine>>;
+
+// The mesh at one size.
+struct Case {
+    Mesh mesh;
+    Engines engines;
+    RayReport report;
+    double scale = 1;
 };
 
-struct Row {
-    std::string engine;
-    double build_ms = 0;
-    double bytes_per_triangle = 0, vertex_bytes_per_triangle = 0;
-    std::vector<Column> columns;
+// Engines take turns within every repeat, and every repeat begins with another, so that what disturbs the machine
+// disturbs them alike.
+template <typename Measure>
+void take_turns(std::size_t engines, int repeats, const Measure& measure)
+{
+    for (int repeat = 0; repeat < repeats; ++repeat)
+        for (std::size_t i = 0; i < engines; ++i)
+            measure((i + static_cast<std::size_t>(repeat)) % engines);
+}
+
+void measure_builds(Case& c, const Options& options)
+{
+    for (const unsigned threads : options.threads) {
+        std::vector<std::vector<double>> cpu(c.engines.size()), wall(c.engines.size());
+        take_turns(c.engines.size(), options.repeats, [&](std::size_t e) {
+            const auto same_tree = [&](const auto& other) { return other->tree() == c.engines[e]->tree(); };
+            if (std::find_if(c.engines.begin(), c.engines.end(), same_tree)->get() != c.engines[e].get())
+                return;
+            const RayEngine::BuildCost cost = c.engines[e]->time_build(threads);
+            cpu[e].push_back(1e3 * cost.cpu_s);
+            wall[e].push_back(1e3 * cost.wall_s);
+        });
+        for (std::size_t e = 0; e < c.engines.size(); ++e) {
+            std::size_t timed = 0;
+            while (c.engines[timed]->tree() != c.engines[e]->tree())
+                ++timed;
+            c.report.engines[e].builds.push_back({threads, spread_of(cpu[timed]), spread_of(wall[timed])});
+        }
+    }
+}
+
+struct Traced {
+    Spent spent; // cpu: the mean of the threads
+    std::uint64_t hits = 0;
 };
-
-Mesh read_mesh(const std::string& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw std::runtime_error("cannot read " + path);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    const auto nothing_else = [](std::string_view) { return std::optional<std::span<const std::byte>>(); };
-    ImportResult result = import_mesh(path, std::as_bytes(std::span(bytes)), nothing_else, Limits::none());
-    if (const ImportFault* fault = std::get_if<ImportFault>(&result))
-        throw std::runtime_error(path + ": " + fault->detail);
-    return std::move(std::get<ImportedMesh>(result).mesh);
-}
-
-double median(std::vector<double> values)
-{
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
-
-template <typename Work>
-double seconds(const Work& work)
-{
-    const auto start = Clock::now();
-    work();
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // All rays of a set, in chunks that threads claim in order.
-std::uint64_t trace_all(const RayEngine& engine, const RaySet& set, ThreadPool& pool, unsigned threads)
+Traced trace_all(const RayEngine& engine, const RaySet& set, ThreadPool& pool, unsigned threads)
 {
     constexpr std::size_t kChunk = 4096;
     std::atomic<std::uint64_t> hits{0};
+    std::vector<double> cpu(threads, 0);
     const std::span<const FloatRay> rays(set.rays);
+    const Stopwatch watch(CLOCK_MONOTONIC);
     pool.run((rays.size() + kChunk - 1) / kChunk,
-             [&](std::size_t i, unsigned) {
+             [&](std::size_t i, unsigned worker) {
+                 const Stopwatch chunk(CLOCK_THREAD_CPUTIME_ID);
                  hits +=
                      engine.trace(set, rays.subspan(i * kChunk, std::min(kChunk, rays.size() - i * kChunk)));
+                 cpu[worker] += chunk.spent().cpu_s;
              },
              {},
              threads);
-    return hits;
+    Traced traced{watch.spent(), hits};
+    traced.spent.cpu_s = 0;
+    for (const double one : cpu)
+        traced.spent.cpu_s += one / threads;
+    return traced;
 }
 
-// Engines take turns within every repeat, so that what disturbs the machine disturbs them alike.
-std::vector<Row> measure(const std::vector<std::unique_ptr<RayEngine>>& engines,
-                         const std::vector<RaySet>& sets,
-                         const Options& options,
-                         double triangles)
+void measure_set(Case& c, const RaySet& set, const Options& options)
 {
-    ThreadPool pool(options.threads);
-    std::vector<Row> rows(engines.size());
-    std::vector<std::vector<double>> builds(engines.size());
-    for (int repeat = 0; repeat < options.repeats; ++repeat)
-        for (std::size_t e = 0; e < engines.size(); ++e)
-            builds[e].push_back(seconds([&] { engines[e]->build(); }));
-    for (std::size_t e = 0; e < engines.size(); ++e) {
-        rows[e].engine = engines[e]->name();
-        rows[e].build_ms = 1e3 * median(builds[e]);
-        rows[e].bytes_per_triangle = static_cast<double>(engines[e]->bytes()) / triangles;
-        rows[e].vertex_bytes_per_triangle = static_cast<double>(engines[e]->vertex_bytes()) / triangles;
+    for (EngineReport& engine : c.report.engines)
+        engine.sets.push_back({set.name, {}, {}});
+    const auto million = static_cast<double>(set.rays.size()) / 1e6;
+    for (const unsigned threads : options.threads) {
+        ThreadPool pool(threads);
+        std::vector<RayFigures> figures(c.engines.size());
+        std::vector<std::vector<double>> wall(c.engines.size());
+        take_turns(c.engines.size(), options.repeats, [&](std::size_t e) {
+            const Traced traced = trace_all(*c.engines[e], set, pool, threads);
+            figures[e].cpu_repeats.push_back(million / traced.spent.cpu_s);
+            wall[e].push_back(million / traced.spent.wall_s);
+            figures[e].hits = traced.hits;
+        });
+        for (std::size_t e = 0; e < c.engines.size(); ++e) {
+            RayFigures& f = figures[e];
+            f.threads = threads;
+            f.rays = set.rays.size();
+            f.cpu = spread_of(f.cpu_repeats);
+            f.wall = spread_of(wall[e]);
+            c.report.engines[e].sets.back().figures.push_back(std::move(f));
+        }
     }
-    for (const RaySet& set : sets) {
-        std::vector<std::vector<double>> times(engines.size());
-        for (Row& row : rows)
-            row.columns.push_back({0, 0, set.rays.size()});
-        for (int repeat = 0; repeat < options.repeats; ++repeat)
-            for (std::size_t e = 0; e < engines.size(); ++e)
-                times[e].push_back(seconds([&] {
-                    rows[e].columns.back().hits = trace_all(*engines[e], set, pool, options.threads);
-                }));
-        for (std::size_t e = 0; e < engines.size(); ++e)
-            rows[e].columns.back().million_per_s =
-                static_cast<double>(set.rays.size()) / median(times[e]) / 1e6;
-    }
-    return rows;
+    const auto answers_of = [&](const RayEngine& engine) {
+        std::vector<FoundHit> found(set.rays.size());
+        engine.trace(set, set.rays, found.data());
+        return found;
+    };
+    const std::vector<FoundHit> ours = answers_of(*c.engines.front());
+    for (std::size_t e = 1; e < c.engines.size(); ++e)
+        c.report.engines[e].sets.back().differences =
+            compare_hits(c.mesh, set, {*c.engines.front(), ours}, {*c.engines[e], answers_of(*c.engines[e])});
 }
 
-void print_table(const std::vector<Row>& rows, const std::vector<RaySet>& sets)
+std::vector<RaySet> sets_of(const Case& c, const Options& options)
 {
-    std::printf("%-30s", "million rays a second");
-    for (const RaySet& set : sets)
-        std::printf(" %22s", set.name.c_str());
-    std::printf(" %10s %8s %10s\n", "build ms", "B/tri", "+vertices");
-    for (const Row& row : rows) {
-        std::printf("%-30s", row.engine.c_str());
-        for (const Column& column : row.columns)
-            std::printf(" %22.2f", column.million_per_s);
-        std::printf(
-            " %10.1f %8.1f %10.1f\n", row.build_ms, row.bytes_per_triangle, row.vertex_bytes_per_triangle);
-    }
-    std::printf("%-30s\n", "hits");
-    for (const Row& row : rows) {
-        std::printf("%-30s", row.engine.c_str());
-        for (const Column& column : row.columns)
-            std::printf(" %11llu/%10llu",
-                        static_cast<unsigned long long>(column.hits),
-                        static_cast<unsigned long long>(column.rays));
-        std::printf("\n");
-    }
-    if (rows.size() < 2) return;
-    std::printf("%-30s\n", "Heliograph over the peer (build and bytes: less is better)");
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-        std::printf("%-30s", rows[i].engine.c_str());
-        for (std::size_t c = 0; c < sets.size(); ++c)
-            std::printf(" %22.2f", rows[0].columns[c].million_per_s / rows[i].columns[c].million_per_s);
-        std::printf(" %10.2f %8.2f\n",
-                    rows[0].build_ms / rows[i].build_ms,
-                    rows[0].bytes_per_triangle / rows[i].bytes_per_triangle);
-    }
-}
-
-void print_json(const std::vector<Row>& rows,
-                const std::vector<RaySet>& sets,
-                const Options& options,
-                std::size_t triangles)
-{
-    nlohmann::json document{{"mesh", options.mesh},
-                            {"triangles", triangles},
-                            {"threads", options.threads},
-                            {"repeats", options.repeats},
-                            {"engines", nlohmann::json::array()}};
-    for (const Row& row : rows) {
-        nlohmann::json engine{{"name", row.engine},
-                              {"build_ms", row.build_ms},
-                              {"bytes_per_triangle", row.bytes_per_triangle},
-                              {"vertex_bytes_per_triangle", row.vertex_bytes_per_triangle}};
-        for (std::size_t c = 0; c < sets.size(); ++c)
-            engine["rays"][sets[c].name] = {{"million_per_s", row.columns[c].million_per_s},
-                                            {"hits", row.columns[c].hits},
-                                            {"rays", row.columns[c].rays}};
-        document["engines"].push_back(engine);
-    }
-    std::cout << document.dump(2) << "\n";
-}
-
-void run(const Options& options)
-{
-    const Mesh mesh = read_mesh(options.mesh);
-    const BvhSplit split = options.split == "sah" ? BvhSplit::sah : BvhSplit::midpoint;
-    std::vector<RaySet> sets;
-    {
-        ThreadPool pool;
-        const auto bvh =
-            MeshBvh::build(mesh, {0, static_cast<std::uint32_t>(mesh.triangles.size())}, split, pool);
-        sets = make_ray_sets(
-            mesh, *bvh, options.view == "nave" ? view_of_nave() : view_of_object(bvh->bounds()));
-    }
+    ThreadPool pool;
+    const auto bvh =
+        MeshBvh::build(c.mesh, {0, static_cast<std::uint32_t>(c.mesh.triangles.size())}, BvhSplit::sah, pool);
+    View view = view_of_object(bvh->bounds());
+    if (options.view == "nave") view = scaled(view_of_nave(), c.scale);
+    std::vector<RaySet> sets = make_ray_sets(c.mesh, *bvh, view);
     if (!options.only.empty())
         std::erase_if(sets, [&](const RaySet& set) {
             return std::find(options.only.begin(), options.only.end(), set.name) == options.only.end();
         });
-    auto engines = make_heliograph_engines(mesh, split, options.every_kernel);
+    if (sets.empty()) throw std::runtime_error("no ray set has such a name");
+    return sets;
+}
+
+// Filled in place: engines refer to the mesh.
+void prepare_case(Case& c, const Mesh& native, double diagonal, const Options& options)
+{
+    c.mesh = native;
+    if (diagonal > 0) {
+        c.scale = diagonal / diagonal_of(native);
+        scale_mesh(c.mesh, c.scale);
+    }
+    const BvhSplit split = options.split == "sah" ? BvhSplit::sah : BvhSplit::midpoint;
+    c.engines = make_heliograph_engines(c.mesh, split, options.every_kernel);
+    const std::size_t ours = c.engines.size();
     if (options.peer == "embree") {
-        auto peers = make_embree_engines(mesh);
+        Engines peers = make_embree_engines(c.mesh);
         if (peers.empty())
             throw std::runtime_error("this build has no Embree: install libembree-dev and configure again");
-        std::move(peers.begin(), peers.end(), std::back_inserter(engines));
+        std::move(peers.begin(), peers.end(), std::back_inserter(c.engines));
     }
-    const auto rows = measure(engines, sets, options, static_cast<double>(mesh.triangles.size()));
-    if (options.json)
-        print_json(rows, sets, options, mesh.triangles.size());
-    else
-        print_table(rows, sets);
+    c.report = {.mesh = options.terrain != 0 ? "terrain" : options.mesh,
+                .view = options.view,
+                .triangles = c.mesh.triangles.size(),
+                .diagonal = diagonal_of(c.mesh),
+                .native = diagonal <= 0,
+                .repeats = options.repeats,
+                .engines = {}};
+    for (std::size_t e = 0; e < c.engines.size(); ++e)
+        c.report.engines.push_back({.name = c.engines[e]->name(),
+                                    .tree = c.engines[e]->tree(),
+                                    .ours = e < ours,
+                                    .high_quality = c.engines[e]->high_quality(),
+                                    .builds = {},
+                                    .sets = {}});
+}
+
+void trace_case(Case& c, const Options& options)
+{
+    const auto triangles = static_cast<double>(c.mesh.triangles.size());
+    for (std::size_t e = 0; e < c.engines.size(); ++e) {
+        c.engines[e]->build();
+        c.report.engines[e].bytes_per_triangle = static_cast<double>(c.engines[e]->bytes()) / triangles;
+        c.report.engines[e].vertex_bytes_per_triangle =
+            static_cast<double>(c.engines[e]->vertex_bytes()) / triangles;
+    }
+    for (const RaySet& set : sets_of(c, options))
+        measure_set(c, set, options);
+    c.engines.clear();
+}
+
+void write_json(const std::vector<RayReport>& reports, const std::string& path)
+{
+    const std::string text = to_json(reports).dump(2) + "\n";
+    if (path == "-") {
+        std::cout << text;
+        return;
+    }
+    std::ofstream file(path);
+    if (!(file << text) || !file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+void run(const Options& options)
+{
+    std::vector<Case> cases(options.diagonals.size());
+    {
+        if (options.mesh.empty() == (options.terrain == 0))
+            throw std::runtime_error("rays needs either --mesh or --terrain");
+        const Mesh native = options.terrain != 0 ? terrain_mesh(options.terrain) : read_mesh(options.mesh);
+        for (std::size_t i = 0; i < cases.size(); ++i)
+            prepare_case(cases[i], native, options.diagonals[i], options);
+    }
+    // All builds first: tracing leaves threads of Embree's behind.
+    for (Case& c : cases)
+        measure_builds(c, options);
+    std::vector<RayReport> reports;
+    for (Case& c : cases) {
+        trace_case(c, options);
+        if (options.json.empty() || options.table) print_table(c.report, stdout);
+        reports.push_back(std::move(c.report));
+    }
+    if (!options.json.empty()) write_json(reports, options.json);
 }
 
 } // namespace
@@ -215,24 +243,34 @@ void add_rays(CLI::App& app)
     CLI::App* const command =
         app.add_subcommand("rays", "million rays a second on one mesh, build time and memory");
     const auto options = std::make_shared<Options>();
-    command->add_option("--mesh", options->mesh, "mesh file")->required();
+    command->add_option("--mesh", options->mesh, "mesh file");
+    command->add_option("--terrain", options->terrain, "instead of a file: a terrain of so many triangles")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
     command->add_option("--view", options->view, "object: from outside; nave: within Sponza or the museum")
         ->check(CLI::IsMember({"object", "nave"}))
+        ->capture_default_str();
+    command
+        ->add_option("--diagonal", options->diagonals, "sizes to scale the mesh to; 0: its own, as it came")
+        ->check(CLI::Range(0.0, 1e6))
+        ->delimiter(',')
         ->capture_default_str();
     command->add_option("--peer", options->peer, "engine to measure beside ours")
         ->check(CLI::IsMember({"embree"}));
     command->add_option("--split", options->split, "how our tree is built")
         ->check(CLI::IsMember({"sah", "midpoint"}))
         ->capture_default_str();
-    command->add_option("--threads", options->threads, "threads that trace; builds use one")
+    command->add_option("--threads", options->threads, "numbers of threads that build and trace: 1,2")
         ->check(CLI::Range(1, 1024))
+        ->delimiter(',')
         ->capture_default_str();
     command->add_option("--repeats", options->repeats, "the median is told")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--only", options->only, "ray sets to trace: primary, shadow, diffuse, ...");
+    command->add_option("--only", options->only, "ray sets to trace: primary, shadow, diffuse, ...")
+        ->delimiter(',');
     command->add_flag("--kernels", options->every_kernel, "every kernel of ours, not only the best");
-    command->add_flag("--json", options->json, "JSON instead of the table");
+    command->add_option("--json", options->json, "JSON into this file, - for stdout, instead of the table");
+    command->add_flag("--table", options->table, "the table as well as JSON");
     command->callback([options] { run(*options); });
 }
 
