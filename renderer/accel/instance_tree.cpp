@@ -23,18 +23,16 @@ struct InstanceTree::Best {
 InstanceTree::InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool)
     : instances_(std::move(instances))
 {
-    std::vector<Bounds3d> boxes;
-    std::vector<std::uint32_t> numbers;
+    PlainArray<BuildItem<double>> items(instances_.size());
+    std::size_t count = 0;
     for (std::uint32_t i = 0; i < instances_.size(); ++i) {
         const Bounds3d box = instances_[i].world_bounds();
         if (box.empty()) continue;
         bounds_.extend(box);
-        boxes.push_back(box);
-        numbers.push_back(i);
+        items[count++] = {box.lower, i, box.upper};
     }
-    bvh_ = *build_bvh<double>(boxes, {.split = split, .leaf_size = 1}, pool);
-    for (std::uint32_t& number : bvh_.order)
-        number = numbers[number];
+    items.shorten(count);
+    bvh_ = *build_bvh<double>(std::move(items), {.split = split, .leaf_size = 1}, pool);
 }
 
 void InstanceTree::consider(const Ray& ray, RayKind kind, std::uint32_t number, Best& best) const
@@ -66,7 +64,7 @@ std::optional<SceneHit> InstanceTree::closest_hit(const Ray& ray, RayKind kind) 
 {
     Best best;
     if (bvh_.order.size() == 1) {
-        consider(ray, kind, bvh_.order.front(), best);
+        consider(ray, kind, bvh_.order[0], best);
     } else if (!bvh_.empty() && is_traceable(ray)) {
         Ray shortened = ray;
         traverse(bvh_,
@@ -92,7 +90,7 @@ std::optional<SceneHit> InstanceTree::closest_hit(const Ray& ray, RayKind kind) 
 bool InstanceTree::any_hit(const Ray& ray, RayKind kind) const
 {
     if (bvh_.order.size() == 1) {
-        const Instance& only = instances_[bvh_.order.front()];
+        const Instance& only = instances_[bvh_.order[0]];
         return only.visible_to(kind) && only.any_hit(ray);
     }
     if (bvh_.empty() || !is_traceable(ray)) return false;
@@ -206,7 +204,7 @@ std::uint32_t
 InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind) const
 {
     if (bvh_.order.size() == 1) {
-        const std::uint32_t number = bvh_.order.front();
+        const std::uint32_t number = bvh_.order[0];
         const Instance& only = instances_[number];
         if (!only.visible_to(kind)) return 0;
         Instance::Candidate found[kMostRays];
@@ -229,7 +227,7 @@ InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, 
 std::uint32_t InstanceTree::any_hits(std::span<const Ray> rays, RayKind kind) const
 {
     if (bvh_.order.size() == 1) {
-        const Instance& only = instances_[bvh_.order.front()];
+        const Instance& only = instances_[bvh_.order[0]];
         return only.visible_to(kind) ? only.any_hits(rays) : 0;
     }
     RunWalk<true> run(*this, rays, kind);

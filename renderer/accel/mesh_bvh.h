@@ -13,6 +13,7 @@
 #include "renderer/accel/mesh_hit.h"
 #include "renderer/accel/mesh_kernels.h"
 #include "renderer/accel/triangle_block.h"
+#include "renderer/accel/triangle_items.h"
 #include "renderer/accel/wide_bvh.h"
 #include "renderer/description/settings.h"
 #include "renderer/geometry/mesh.h"
@@ -22,13 +23,8 @@
 #include <optional>
 #include <span>
 #include <stop_token>
-#include <vector>
 
 namespace renderer {
-
-struct TriangleRun {
-    std::uint32_t first = 0, count = 0;
-};
 
 class MeshBvh {
 public:
@@ -66,8 +62,8 @@ private:
         return {bvh_.nodes.empty() ? nullptr : bvh_.nodes.data(), leaves_.data(), bvh_.bounds, scale_};
     }
 
-    WideBvh bvh_;                       // in scaled coordinates
-    std::vector<TriangleBlock> leaves_; // with copies of the corners, so that a test reads one place
+    WideBvh bvh_;                      // in scaled coordinates
+    PlainArray<TriangleBlock> leaves_; // with copies of the corners, so that a test reads one place
     Bounds3f bounds_;
     float scale_ = 1; // power of two that brings coordinates near 1 where they are far from it
     std::uint64_t degenerate_ = 0;

@@ -1,13 +1,14 @@
 // WideBvh: a tree of boxes, eight children a node, tested at once; made from a binary Bvh<float>.
 //
-// Layout  224 bytes a node. A child is an inner node, or a leaf: a run of at most two of the caller's blocks.
+// Layout  224 bytes a node, inner children side by side. A child is an inner node, or a leaf: a run of at most two
+//         of the caller's blocks.
 #pragma once
 
 #include "renderer/accel/bvh.h"
+#include "renderer/accel/plain_array.h"
 
 #include <cstdint>
-#include <span>
-#include <vector>
+#include <functional>
 
 namespace renderer {
 
@@ -29,69 +30,21 @@ struct ChildCode {
 };
 
 struct WideBvh {
-    std::vector<WideNode> nodes; // the root is first; none: nothing to hit
+    PlainArray<WideNode> nodes; // the root is first; none: nothing to hit
     Bounds3f bounds;
     unsigned depth = 0;
 };
 
-// `leaf_blocks(first, count)` is called once for every leaf, in the order of the tree, with its run of
-// bvh.order; it returns the leaf's first block and number of blocks, one or two.
-struct BlockRun {
-    std::uint32_t first, count;
+// What the leaves hold, the caller fills: `blocks(leaf)` tells how many of its blocks a leaf takes, one or two;
+// `reserve(blocks)` is called once, with the number of all; then `fill(leaf, block)` once for every leaf, from many
+// threads, with the first of its blocks.
+struct LeafFiller {
+    std::function<std::uint32_t(std::uint32_t primitives)> blocks;
+    std::function<void(std::uint32_t blocks)> reserve;
+    std::function<void(const BvhNode<float>& leaf, std::uint32_t block)> fill;
 };
-template <typename LeafBlocks>
-WideBvh widen(const Bvh<float>& bvh, LeafBlocks&& leaf_blocks);
 
-namespace wide {
-
-// Up to eight nodes of the binary tree that become the children of one: the largest inner ones are opened
-// first.
-struct Children {
-    BvhNode<float> node[WideNode::kChildren];
-    unsigned count = 0;
-};
-Children children_of(const Bvh<float>& bvh, const BvhNode<float>& node);
-WideNode empty_node();
-void set_box(WideNode& node, unsigned slot, const BvhNode<float>& box);
-
-template <typename LeafBlocks>
-void widen_into(WideBvh& wide,
-                std::uint32_t at,
-                const Bvh<float>& bvh,
-                const BvhNode<float>& node,
-                unsigned depth,
-                LeafBlocks& leaf_blocks)
-{
-    wide.depth = depth > wide.depth ? depth : wide.depth;
-    const Children children = children_of(bvh, node);
-    for (unsigned i = 0; i < children.count; ++i) {
-        const BvhNode<float>& child = children.node[i];
-        set_box(wide.nodes[at], i, child);
-        if (child.count != 0) {
-            const BlockRun run = leaf_blocks(child.first, child.count);
-            wide.nodes[at].child[i] = ChildCode::leaf(run.first, run.count);
-            continue;
-        }
-        const auto next = static_cast<std::uint32_t>(wide.nodes.size());
-        wide.nodes.push_back(empty_node());
-        wide.nodes[at].child[i] = next;
-        widen_into(wide, next, bvh, child, depth + 1, leaf_blocks);
-    }
-}
-
-} // namespace wide
-
-template <typename LeafBlocks>
-WideBvh widen(const Bvh<float>& bvh, LeafBlocks&& leaf_blocks)
-{
-    WideBvh result;
-    if (bvh.empty()) return result;
-    result.bounds = {bvh.root.lower, bvh.root.upper};
-    result.nodes.reserve(bvh.pairs.size() / 4 + 1);
-    result.nodes.push_back(wide::empty_node());
-    wide::widen_into(result, 0, bvh, bvh.root, 1, leaf_blocks);
-    result.nodes.shrink_to_fit();
-    return result;
-}
+// The same tree on any number of threads.
+WideBvh widen(const Bvh<float>& bvh, const LeafFiller& leaves, ThreadPool& pool);
 
 } // namespace renderer

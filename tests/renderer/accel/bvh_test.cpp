@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <stop_token>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -28,10 +32,19 @@ std::vector<Bounds3<T>> random_boxes(Random& random, std::size_t count)
 }
 
 template <typename T>
+PlainArray<BuildItem<T>> items_of(const std::vector<Bounds3<T>>& boxes)
+{
+    PlainArray<BuildItem<T>> items(boxes.size());
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        items[i] = {boxes[i].lower, i, boxes[i].upper};
+    return items;
+}
+
+template <typename T>
 Bvh<T> build(const std::vector<Bounds3<T>>& boxes, BvhSplit split, unsigned threads = 1)
 {
     ThreadPool pool(threads);
-    return *build_bvh<T>(boxes, {.split = split}, pool);
+    return *build_bvh<T>(items_of(boxes), {.split = split}, pool);
 }
 
 template <typename T>
@@ -46,7 +59,7 @@ bool contains(const BvhNode<T>& node, const Bounds3<T>& box)
 template <typename T>
 unsigned expect_sound(const Bvh<T>& bvh, const std::vector<Bounds3<T>>& boxes, std::uint32_t leaf_size = 4)
 {
-    std::vector<std::uint32_t> sorted = bvh.order;
+    std::vector<std::uint32_t> sorted(bvh.order.begin(), bvh.order.end());
     std::sort(sorted.begin(), sorted.end());
     EXPECT_EQ(sorted.size(), boxes.size());
     for (std::uint32_t i = 0; i < sorted.size(); ++i)
@@ -106,10 +119,9 @@ TEST_P(BvhOfEitherSplit, IsTheSameOnAnyNumberOfThreads)
     const Bvh<float> one = build(boxes, GetParam(), 1);
     for (const unsigned threads : {2u, 3u, 8u}) {
         const Bvh<float> many = build(boxes, GetParam(), threads);
-        ASSERT_EQ(many.order, one.order);
+        ASSERT_TRUE(std::equal(many.order.begin(), many.order.end(), one.order.begin(), one.order.end()));
         ASSERT_EQ(many.pairs.size(), one.pairs.size());
-        EXPECT_EQ(std::memcmp(many.pairs.data(), one.pairs.data(), one.pairs.size() * sizeof one.pairs[0]),
-                  0);
+        EXPECT_EQ(std::memcmp(many.pairs.data(), one.pairs.data(), one.pairs.size_bytes()), 0);
     }
     EXPECT_GT(one.pairs.size(), 60000u / 4); // large enough to have been shared among threads
 }
@@ -127,6 +139,38 @@ TEST_P(BvhOfEitherSplit, EndsWhereNothingTellsPrimitivesApart)
     expect_sound(build(nested, GetParam()), nested);
     const std::vector<Bounds3f> points(1000, Bounds3f{{0, 0, 0}, {0, 0, 0}});
     expect_sound(build(points, GetParam()), points);
+}
+
+TEST_P(BvhOfEitherSplit, HoldsAPrimitiveAsOftenAsItWasGiven)
+{
+    // Parts of one primitive may be given apart from one another.
+    Random random(7);
+    const auto boxes = random_boxes<float>(random, 10000);
+    auto items = items_of(boxes);
+    for (BuildItem<float>& item : items)
+        item.primitive /= 2;
+    ThreadPool pool(2);
+    const auto bvh = build_bvh<float>(std::move(items), {.split = GetParam()}, pool);
+    std::vector<int> seen(5000);
+    for (const std::uint32_t primitive : bvh->order)
+        ++seen[primitive];
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 2), 5000);
+}
+
+TEST_P(BvhOfEitherSplit, GivesUpInTheMidstOfIt)
+{
+    Random random(11);
+    const auto boxes = random_boxes<float>(random, 60000);
+    for (int i = 0; i < 20; ++i) {
+        ThreadPool pool(3);
+        std::stop_source stop;
+        std::jthread stopper([&] {
+            std::this_thread::sleep_for(std::chrono::microseconds(200 * i));
+            stop.request_stop();
+        });
+        const auto bvh = build_bvh<float>(items_of(boxes), {.split = GetParam()}, pool, stop.get_token());
+        if (bvh) expect_sound(*bvh, boxes);
+    }
 }
 
 TEST_P(BvhOfEitherSplit, StaysShallowOnALineOfGrowingSteps)
@@ -152,9 +196,9 @@ TEST_P(BvhOfEitherSplit, GivesUpWhenAskedToStop)
     const auto boxes = random_boxes<float>(random, 1000);
     ThreadPool pool(2);
     std::stop_source stop;
-    EXPECT_TRUE(build_bvh<float>(boxes, {.split = GetParam()}, pool, stop.get_token()));
+    EXPECT_TRUE(build_bvh<float>(items_of(boxes), {.split = GetParam()}, pool, stop.get_token()));
     stop.request_stop();
-    EXPECT_FALSE(build_bvh<float>(boxes, {.split = GetParam()}, pool, stop.get_token()));
+    EXPECT_FALSE(build_bvh<float>(items_of(boxes), {.split = GetParam()}, pool, stop.get_token()));
 }
 
 TEST_P(BvhOfEitherSplit, ShowsARayEveryLeafItMayTouch)
