@@ -68,7 +68,14 @@ std::string write_discovery()
                       {"capabilities", "/v1/capabilities"},
                       {"openapi", "/v1/openapi.json"},
                       {"assets", "/v1/assets"},
-                      {"jobs", "/v1/jobs"}}}});
+                      {"asset", "/v1/assets/{digest}"},
+                      {"asset_info", "/v1/assets/{digest}/info"},
+                      {"jobs", "/v1/jobs"},
+                      {"job", "/v1/jobs/{id}"},
+                      {"cancel", "/v1/jobs/{id}/cancel"},
+                      {"image", "/v1/jobs/{id}/image"},
+                      {"report", "/v1/jobs/{id}/report"},
+                      {"scene", "/v1/jobs/{id}/scene"}}}});
 }
 
 std::string write_health(bool ready, const std::string& reason)

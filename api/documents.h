@@ -13,7 +13,7 @@ std::string write_job_schema();  // JSON Schema of POST /v1/jobs' body: api/sche
 std::string write_version();     // {version, commit, compiler, build_type, isa}
 std::string
 write_capabilities(const renderer::Limits& limits); // every limit (value, flag, env), model, format, default
-std::string write_discovery();                      // GET /: links
+std::string write_discovery();                      // GET /: links, those of many as templates
 std::string write_health(bool ready, const std::string& reason); // /healthz, /readyz
 
 } // namespace api

@@ -16,7 +16,9 @@
 // This file is compiled once for every target of Highway; what is above, for the baseline alone. The order of
 // the rest matters.
 // clang-format off
-#define HWY_DISABLED_TARGETS HWY_SSSE3 // so few processors stop there that the portable kernel will do
+// Few processors stop at SSSE3: the portable kernel will do. Vectors of SVE have no size and cannot be members;
+// where it is, NEON is too.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "renderer/accel/mesh_kernels.cpp"
 #include <hwy/foreach_target.h>

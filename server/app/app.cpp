@@ -8,8 +8,10 @@
 #include "server/store/data_folder.h"
 #include "server/store/sqlite_store.h"
 
+#include <algorithm>
 #include <malloc.h>
 #include <ostream>
+#include <sys/resource.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -38,6 +40,16 @@ void keep_memory_small()
     mallopt(M_ARENA_MAX, kArenas);
 }
 
+// Each connection is a descriptor; the default of 1024 is for programs that use select().
+void allow_many_files()
+{
+    rlimit files{};
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+    constexpr rlim_t kEnough = 8192;
+    files.rlim_cur = std::max(files.rlim_cur, std::min(files.rlim_max, kEnough));
+    setrlimit(RLIMIT_NOFILE, &files); // refused: there are fewer connections
+}
+
 std::string url_of(const std::string& host, int port)
 {
     const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
@@ -49,6 +61,7 @@ std::string url_of(const std::string& host, int port)
 int run_service(const ServiceOptions& options, const StopSignals& signals, std::ostream& out)
 {
     keep_memory_small();
+    allow_many_files();
     const Log log(options.log_level);
     const std::filesystem::path import_program = import_program_of(options);
     const DataFolder folder(options.data);

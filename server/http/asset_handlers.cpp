@@ -85,7 +85,7 @@ void AssetHandlers::get(Exchange& exchange)
 {
     const std::string& digest = exchange.path.at("digest");
     if (!is_digest(digest)) return reply_problem(exchange, no_such_asset(digest));
-    Payload payload{{}, 0, digest, "application/octet-stream"};
+    Payload payload{.digest = digest, .content_type = "application/octet-stream"};
     if (exchange.request.method == "HEAD") {
         const auto size = blobs_.size(kAsset, digest);
         if (!size) return reply_problem(exchange, no_such_asset(digest));
@@ -96,6 +96,7 @@ void AssetHandlers::get(Exchange& exchange)
         if (!reader) return reply_problem(exchange, no_such_asset(digest));
         payload.size = reader->size();
         payload.source = [reader](std::uint64_t offset) { return reader->at(offset); };
+        payload.let_go = [reader] { reader->let_go(); };
     }
     exchange.response.set_header("Cache-Control", "private, immutable");
     exchange.response.set_header("Content-Disposition", "attachment");

@@ -23,14 +23,19 @@ void give_bytes(httplib::Response& response, const Payload& payload, std::uint64
 {
     if (count == 0) return response.set_content("", payload.content_type);
     if (payload.source) payload.source(first); // what is damaged here can still be said with a status
-    response.set_content_provider(
-        static_cast<std::size_t>(count),
-        payload.content_type,
-        [source = payload.source, first](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-            if (!source) return false;
-            const std::span<const std::byte> bytes = source(first + offset);
-            return sink.write(reinterpret_cast<const char*>(bytes.data()), std::min(length, bytes.size()));
-        });
+    response.set_content_provider(static_cast<std::size_t>(count),
+                                  payload.content_type,
+                                  [source = payload.source, let_go = payload.let_go, first](
+                                      std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                      if (!source) return false;
+                                      if (length == 0) { // as AnswerOutbox asks
+                                          if (let_go) let_go();
+                                          return true;
+                                      }
+                                      const std::span<const std::byte> bytes = source(first + offset);
+                                      return sink.write(reinterpret_cast<const char*>(bytes.data()),
+                                                        std::min(length, bytes.size()));
+                                  });
 }
 
 unsigned hex_value(char c)

@@ -6,7 +6,9 @@
 #include "server/http/job_handlers.h"
 #include "server/http/router.h"
 
+#include <algorithm>
 #include <mutex>
+#include <sys/resource.h>
 
 namespace server {
 
@@ -14,15 +16,32 @@ namespace {
 
 // Beside those that wait or stream, ordinary requests have these.
 constexpr std::size_t kOrdinaryThreads = 16;
+constexpr std::size_t kBodyThreads = 24;
 constexpr std::size_t kHealthThreads = 2;
 constexpr std::size_t kHealthQueue = 64;
+constexpr std::size_t kHealthConnections = 256;
+// Descriptors that are not connections': files, the importers' pipes, the store.
+constexpr std::size_t kOtherDescriptors = 256;
+
+// As many as there may be, and as there are descriptors for.
+std::size_t most_connections()
+{
+    rlimit files{};
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0) return kHealthConnections;
+    constexpr rlim_t kNotOurs = kOtherDescriptors + kHealthConnections;
+    const rlim_t left = files.rlim_cur > 2 * kNotOurs ? files.rlim_cur - kNotOurs : files.rlim_cur / 2;
+    return std::min(ParkingLimits().connections, static_cast<std::size_t>(left));
+}
 
 GuardOptions guard_options(const HttpOptions& options)
 {
     GuardOptions guard;
     guard.threads = static_cast<std::size_t>(options.limits.waiters) + kOrdinaryThreads;
     guard.queue = options.connection_queue;
-    guard.bodies_per_client = guard.threads / 3;
+    guard.body_threads = kBodyThreads;
+    guard.bodies_per_client = kBodyThreads / 3;
+    guard.parking.connections = most_connections();
+    guard.parking.per_client = std::max<std::size_t>(guard.parking.connections / 4, 1);
     guard.stream.head = std::chrono::seconds(options.limits.header_s);
     guard.stream.idle_body = std::chrono::seconds(options.limits.idle_body_s);
     guard.stream.idle_write = options.write_stall;
@@ -34,9 +53,11 @@ GuardOptions health_options(const HttpOptions& options)
 {
     GuardOptions guard = guard_options(options);
     guard.threads = kHealthThreads;
-    guard.bodies_per_client = 1; // nothing here takes one
+    guard.body_threads = 1; // nothing here takes one
+    guard.bodies_per_client = 1;
     guard.queue = kHealthQueue;
-    guard.requests_per_connection = 1; // two threads: nobody keeps one
+    guard.requests_per_connection = 1; // nobody keeps a place
+    guard.parking = {kHealthConnections, kHealthConnections / 4, std::size_t{4} << 20};
     guard.drain = std::chrono::seconds(1);
     guard.stream.head = std::chrono::seconds(1);
     guard.stream.keep_alive = std::chrono::seconds(1);

@@ -24,10 +24,10 @@ struct HttpOptions {
     int port = 8080;     // 0: any free port
     int health_port = 0; // 0: any free port; the second listener, for /healthz and /readyz alone
     renderer::Limits limits;
-    // Who reads an answer more slowly than this is cut off, since each connection holds a thread.
+    // Who reads an answer or sends a body more slowly than this is cut off.
     std::chrono::milliseconds write_stall{10000}; // silence
     std::uint64_t write_rate = 16 << 10;          // bytes a second on average, after the first 10 s
-    // Connections that wait for a thread beyond this many are refused with 503.
+    // Requests that wait for a thread beyond this many are refused with 503.
     std::size_t connection_queue = 256;
     // Called once, when a listener broke and nobody can be reached any more; must not call stop().
     std::function<void()> on_deaf;

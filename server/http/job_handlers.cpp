@@ -210,7 +210,9 @@ void JobHandlers::reply_image(Exchange& exchange, const std::string& id)
     const auto from = [png = picture.png](std::uint64_t offset) {
         return std::span<const std::byte>(*png).subspan(static_cast<std::size_t>(offset));
     };
-    reply_payload(exchange, {from, picture.png->size(), picture.digest, "image/png"});
+    reply_payload(
+        exchange,
+        {.source = from, .size = picture.png->size(), .digest = picture.digest, .content_type = "image/png"});
 }
 
 void JobHandlers::report(Exchange& exchange)

@@ -28,15 +28,39 @@ std::string_view trimmed(std::string_view text)
     return text;
 }
 
+// Where `separator` stands outside quotes, or the end.
+std::size_t find_separator(std::string_view text, char separator)
+{
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '"') quoted = !quoted;
+        if (text[i] == '\\' && quoted) ++i;
+        if (i < text.size() && text[i] == separator && !quoted) return i;
+    }
+    return text.size();
+}
+
 std::vector<std::string_view> split(std::string_view text, char separator)
 {
     std::vector<std::string_view> parts;
     for (;;) {
-        const std::size_t end = std::min(text.find(separator), text.size());
+        const std::size_t end = find_separator(text, separator);
         parts.push_back(trimmed(text.substr(0, end)));
         if (end == text.size()) return parts;
         text.remove_prefix(end + 1);
     }
+}
+
+// A word is a token or a quoted string (RFC 9110, 5.6.4).
+std::string unquoted(std::string_view word)
+{
+    if (word.size() < 2 || word.front() != '"' || word.back() != '"') return std::string(word);
+    std::string text;
+    for (std::size_t i = 1; i + 1 < word.size(); ++i) {
+        if (word[i] == '\\' && i + 2 < word.size()) ++i;
+        text += word[i];
+    }
+    return text;
 }
 
 // q=0, q=0.0 ...: "not this one".
@@ -56,7 +80,7 @@ std::optional<std::uint64_t> preferred_wait_s(const std::string& prefer)
         const std::vector<std::string_view> parts = split(split(preference, ';').front(), '=');
         if (lower(parts.front()) != "wait") continue;
         if (parts.size() != 2) return std::nullopt;
-        const std::string_view digits = parts[1];
+        const std::string digits = unquoted(parts[1]);
         std::uint64_t seconds = 0;
         const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
         if (error == std::errc::result_out_of_range) return UINT64_MAX;

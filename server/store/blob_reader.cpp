@@ -75,4 +75,10 @@ std::span<const std::byte> BlobReader::at(std::uint64_t offset)
     return std::span<const std::byte>(buffer_).subspan(static_cast<std::size_t>(offset - begin));
 }
 
+void BlobReader::let_go()
+{
+    held_ = kNone;
+    buffer_ = {};
+}
+
 } // namespace server

@@ -6,7 +6,7 @@
 //          are not enough: size and time of modification stay as they are when a disk loses a bit; and a
 //          whole that is hashed on its way out is known to be wrong only after most of it has gone, a range
 //          never.
-// Memory   one piece a reader; 32 bytes a piece of a blob that was opened.
+// Memory   one piece a reader, none after let_go(); 32 bytes a piece of a blob that was opened.
 // Cost     first open: the file is read and hashed twice over. Then only the pieces that are asked for are.
 // Threads  one at a time. The file stays readable when the blob is removed.
 // Errors   StoreError: a piece that is not what it was, named by its blob, which counts as missing from then
@@ -51,6 +51,7 @@ public:
     std::uint64_t size() const { return proof_->size; }
     // From `offset`, which is less than size(), to the end of its piece; good until the next call.
     std::span<const std::byte> at(std::uint64_t offset);
+    void let_go(); // of the piece in memory, which the next at() reads and proves anew
 
 private:
     static constexpr std::uint64_t kNone = ~std::uint64_t{0};

@@ -1,15 +1,23 @@
 // heliograph-bench tiles: parallel efficiency of the tile loop, t(1) / (n t(n)), in one run: for a picture
 // with work everywhere, and for one whose every costly pixel lies in a single 16x16 tile.
+//
+// Beside each pair of renders stands a control: arithmetic in registers, on the same threads, which share
+// nothing but the machine. What it loses (one core's two hyper-threads, clocks, other programs) no renderer can
+// win; the ratio to it is the loop's own. `work` is cpu(1) / cpu(n), below 100 % where threads make each other
+// slower; `busy` is cpu(n) / (n t(n)), below 100 % where they wait or are not let run.
 #include "renderer/math/transcendental.h"
 #include "renderer/render.h"
 #include "tests/bench/commands.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <stdexcept>
+#include <vector>
 
 namespace bench {
 
@@ -35,36 +43,111 @@ SceneDescription ball_of_spheres()
     return scene;
 }
 
-double render_seconds(const AssumedScene& scene, RenderSettings settings, unsigned threads, ThreadPool& pool)
+struct Times {
+    double wall_s = 0, cpu_s = 0; // of all threads
+};
+
+template <typename Work>
+Times time_of(Work&& work)
+{
+    const auto cpu_now = [] {
+        timespec t{};
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    };
+    const double cpu = cpu_now();
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), cpu_now() - cpu};
+}
+
+// Some 10 ms of multiplications and additions on a few chains, as shading has them. Never zero.
+double arithmetic(std::size_t item)
+{
+    double a = 1 + 1e-9 * static_cast<double>(item), b = a + 0.1, c = a + 0.2, d = a + 0.3;
+    for (int i = 0; i < 2'000'000; ++i) {
+        a = a * 0.999999 + 1e-6;
+        b = b * 0.999998 + 2e-6;
+        c = c * 0.999997 + 3e-6;
+        d = d * 0.999996 + 4e-6;
+    }
+    return a + b + c + d;
+}
+
+Times control(std::size_t items, unsigned threads, ThreadPool& pool)
+{
+    std::atomic<std::size_t> zeros = 0;
+    const Times times = time_of([&] {
+        pool.run(
+            items, [&](std::size_t item, unsigned) { zeros += arithmetic(item) == 0; }, {}, threads);
+    });
+    if (zeros != 0) throw std::runtime_error("the control computed nothing");
+    return times;
+}
+
+Times render_times(const AssumedScene& scene, RenderSettings settings, unsigned threads, ThreadPool& pool)
 {
     settings.acceleration.threads = threads;
     const std::variant<Plan, std::vector<Fault>> planned = make_plan(scene, {}, settings, Limits::none());
     const Plan& plan = std::get<Plan>(planned);
     const std::shared_ptr<const Scene> ready = prepare(scene, plan, {}, settings, pool);
-    const auto start = std::chrono::steady_clock::now();
-    if (!render(*ready, plan, settings, pool)) throw std::runtime_error("the render was stopped");
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return time_of([&] {
+        if (!render(*ready, plan, settings, pool)) throw std::runtime_error("the render was stopped");
+    });
 }
+
+double efficiency_of(const Times& one, const Times& all, unsigned n)
+{
+    return one.wall_s / (n * all.wall_s);
+}
+
+struct Spread {
+    explicit Spread(std::vector<double> values)
+    {
+        std::sort(values.begin(), values.end());
+        least = 100 * values.front();
+        median = 100 * values[values.size() / 2];
+        most = 100 * values.back();
+    }
+    double least, median, most;
+};
 
 void measure(const char* name, RenderSettings settings, int repeats)
 {
     ThreadPool pool;
     const unsigned n = pool.size();
     const AssumedScene scene = assume_defaults(ball_of_spheres(), {}, 1);
-    std::vector<double> efficiency;
+    const std::size_t items = std::size_t{16} * n;
+    std::vector<double> efficiency, of_control, ratio, work, busy;
     for (int i = 0; i < repeats; ++i) {
-        const double one = render_seconds(scene, settings, 1, pool),
-                     all = render_seconds(scene, settings, n, pool);
-        efficiency.push_back(one / (n * all));
+        const Times one = render_times(scene, settings, 1, pool), control_one = control(items, 1, pool),
+                    all = render_times(scene, settings, n, pool), control_all = control(items, n, pool);
+        efficiency.push_back(efficiency_of(one, all, n));
+        of_control.push_back(efficiency_of(control_one, control_all, n));
+        ratio.push_back(efficiency.back() / of_control.back());
+        work.push_back(one.cpu_s / all.cpu_s);
+        busy.push_back(all.cpu_s / (n * all.wall_s));
     }
-    std::sort(efficiency.begin(), efficiency.end());
-    std::printf("%-28s %u threads: efficiency %.1f %% (median of %d; %.1f to %.1f)   goal: 97 %%\n",
-                name,
-                n,
-                100 * efficiency[efficiency.size() / 2],
-                repeats,
-                100 * efficiency.front(),
-                100 * efficiency.back());
+    const Spread own(efficiency), machine(of_control), to_machine(ratio);
+    std::printf(
+        "%s, %u threads, median of %d\n"
+        "  efficiency %.1f %% (%.1f to %.1f; goal 97)   control %.1f %% (%.1f to %.1f)   ratio %.1f %% "
+        "(%.1f to %.1f)   work %.1f %%   busy %.1f %%\n",
+        name,
+        n,
+        repeats,
+        own.median,
+        own.least,
+        own.most,
+        machine.median,
+        machine.least,
+        machine.most,
+        to_machine.median,
+        to_machine.least,
+        to_machine.most,
+        Spread(work).median,
+        Spread(busy).median);
+    std::fflush(stdout);
 }
 
 void run(int repeats)

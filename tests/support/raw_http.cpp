@@ -47,10 +47,15 @@ std::string HttpAnswer::header(const std::string& name) const
     return found == headers.end() ? std::string() : found->second;
 }
 
-RawConnection::RawConnection(int port, int receive_buffer)
+RawConnection::RawConnection(int port, int receive_buffer, const char* from)
     : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0))
 {
     if (receive_buffer > 0) setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    sockaddr_in own{};
+    own.sin_family = AF_INET;
+    const bool bound = inet_pton(AF_INET, from, &own.sin_addr) == 1 &&
+                       bind(fd_, reinterpret_cast<sockaddr*>(&own), sizeof own) == 0;
+    if (!bound) throw std::runtime_error(std::string("cannot connect from ") + from);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port));

@@ -26,8 +26,9 @@ struct HttpAnswer {
 
 class RawConnection {
 public:
-    // `receive_buffer` > 0: a small window, for clients that read slowly.
-    explicit RawConnection(int port, int receive_buffer = 0);
+    // `receive_buffer` > 0: a small window, for clients that read slowly. `from`: an address of this machine's
+    // loopback, for clients that are several.
+    explicit RawConnection(int port, int receive_buffer = 0, const char* from = "127.0.0.1");
     ~RawConnection();
     RawConnection(const RawConnection&) = delete;
     RawConnection& operator=(const RawConnection&) = delete;

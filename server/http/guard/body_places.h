@@ -1,7 +1,6 @@
-// BodyPlaces: how many connections of one client may be in the midst of sending a body, since each of them
-// holds a thread for as long as it likes to drip.
+// BodyPlaces: how many connections of one client (client_of) may be in the midst of sending a large body, since
+// each of them holds a thread for as long as it keeps up the lowest rate.
 //
-// A client is an IPv4 address, or the /64 of an IPv6 one: whoever has one address there has all of them.
 // Threads  any.
 #pragma once
 
@@ -43,7 +42,7 @@ public:
         BodyPlaces* places_;
         std::string client_;
     };
-    std::optional<Place> enter(const std::string& address); // nothing: the client has all of its own
+    std::optional<Place> enter(const std::string& client); // nothing: the client has all of its own
 
 private:
     void leave(const std::string& client);

@@ -1,22 +1,23 @@
-// ConnectionStream: one connection as httplib reads and writes it, with a deadline on everything.
+// ConnectionStream: one connection: its request as it comes, its answer as it goes, and the moment at which it
+// is dropped when neither moves on.
 //
-// Reading  the head block is collected here, whole and bounded; of the body httplib is given exactly what the
-//          head announced, chunked bodies taken apart and put together anew. `100 Continue` is sent when, and
-//          only when, a handler begins to read the body.
-// Writing  never blocks longer than `idle_write`, nor below `min_rate` for longer than `grace`. An answer
-//          that is sent before the request's body was read says `Connection: close`.
-// Threads  one.
+// Nothing here blocks but read(), for the rest of a large body. Everything else does what can be done at once,
+// so that a connection waits without a thread (ParkedConnections) until deadline().
+// httplib  reads exactly the body that the head announced, chunks taken apart and put together anew. `100
+//          Continue` is sent when, and only when, a handler begins to read. An answer that comes before the
+//          whole body says `Connection: close`.
+// Threads  one at a time.
 #pragma once
 
+#include "server/http/guard/answer_outbox.h"
 #include "server/http/guard/body_places.h"
-#include "server/http/guard/chunk_decoder.h"
-#include "server/http/guard/request_head.h"
+#include "server/http/guard/open_connections.h"
+#include "server/http/guard/request_intake.h"
 
 #include <httplib.h>
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,70 +26,78 @@
 namespace server {
 
 struct StreamLimits {
-    std::chrono::milliseconds head{5000};        // to send a head, from its first byte
-    std::chrono::milliseconds keep_alive{5000};  // silence between two requests
-    std::chrono::milliseconds idle_body{30000};  // silence within a body
+    std::chrono::milliseconds head{5000};       // to send a head, from its first byte
+    std::chrono::milliseconds keep_alive{5000}; // silence before a head
+    std::chrono::milliseconds idle_body{30000}; // silence within a body
+    std::chrono::milliseconds whole_body{std::chrono::hours(1)};
     std::chrono::milliseconds idle_write{10000}; // silence of a reader of an answer
     std::chrono::milliseconds grace{10000};      // from then on min_rate counts, both ways
     std::uint64_t min_rate = 16 << 10;           // bytes a second on average
+    std::chrono::milliseconds farewell{1000};    // to read a refusal while the body still comes
 };
 
 class ConnectionStream final : public httplib::Stream {
 public:
-    ConnectionStream(int fd, const StreamLimits& limits) : fd_(fd), limits_(limits) {}
+    using Clock = std::chrono::steady_clock;
 
-    enum class Await : std::uint8_t { ready, closed, too_slow, too_large };
-    // Collects the next head into `block`. `give_up` is asked while nothing of it has come yet.
-    Await await_head(std::string& block, const std::function<bool()>& give_up);
-    // What httplib reads from now on: the rewritten head and the body.
-    void begin(const RequestHead& head);
+    ConnectionStream(OpenConnections::Entry entry, const StreamLimits& limits);
 
-    // Collects a small body whose end nobody has to wait for. False: it is large, chunked, asked for
-    // 100 Continue, or is not there after `moment`.
-    bool body_comes_within(std::chrono::milliseconds moment);
+    // What it waits for. farewell: its last answer has gone, what still comes is dropped, so that the client
+    // sees the answer instead of a reset.
+    enum class Phase : std::uint8_t { request, answer, farewell };
+    Phase phase() const { return phase_; }
+    Clock::time_point deadline() const; // of what it waits for
+    const RequestIntake& intake() const { return intake_; }
+    const std::string& request_id() { return intake_.request_id(); }
+    std::size_t requests() const { return requests_; } // begun on this connection, the one that comes too
+    std::size_t held_bytes() const { return intake_.held_bytes() + outbox_.held_bytes(); }
+
+    enum class Come : std::uint8_t { nothing, some, end };
+    Come receive();      // what is there, into the request; in a farewell into nothing
+    void begin_answer(); // the request is read, and the answer written, from now on
+    void give_body(httplib::ContentProvider provider, std::size_t length); // after the head of the answer
+    AnswerOutbox::Sent send_answer(std::size_t most);
+    void close_after_answer() { closes_ = true; }
+    bool closes_after_answer() const { return closes_; }
+    void next_request();
+    bool needs_farewell() const; // closed at once, the client could lose the answer
+    void begin_farewell();
+
     void hold_until_body_is_read(BodyPlaces::Place place) { place_ = std::move(place); }
-    bool body_complete() const
-    {
-        return !read_failed_ && body_left_ == 0 && (!chunked_ || decoder_.finished());
-    }
-    bool write_failed() const { return write_failed_; }
+    bool body_complete() const { return !read_failed_ && intake_.body_complete(); }
     bool peer_is_there() const;            // false when the client has hung up
     int status() const { return status_; } // of the answer written, 0 before
-    std::uint64_t bytes_written() const { return bytes_written_; }
-    // Reads and drops what still comes, shortly, so that the client sees the answer instead of a reset; not
-    // longer than until `give_up`.
-    void linger(const std::function<bool()>& give_up);
+    std::uint64_t bytes_sent() const { return outbox_.bytes_sent(); }
+    Clock::time_point begun() const { return begun_; } // the answer
+    int descriptor() const { return entry_.descriptor(); }
+    const std::string& address() const { return entry_.peer().ip; }
+    const std::string& client() const { return entry_.client(); }
 
-    bool is_readable() const override;
-    bool is_writable() const override { return !write_failed_; }
+    bool is_readable() const override { return !read_failed_; }
+    bool is_writable() const override { return true; }
     ssize_t read(char* to, size_t size) override;
     ssize_t write(const char* from, size_t size) override;
     void get_remote_ip_and_port(std::string& ip, int& port) const override;
     void get_local_ip_and_port(std::string& ip, int& port) const override;
-    socket_t socket() const override { return fd_; }
+    socket_t socket() const override { return entry_.descriptor(); }
 
 private:
-    using Clock = std::chrono::steady_clock;
-    bool wait_for(short events, std::chrono::milliseconds timeout) const;
-    bool receive(std::chrono::milliseconds timeout); // appends to buffer_
-    bool too_slow(Clock::time_point since, std::uint64_t bytes) const;
-    bool fill_body();
-    bool send_all(std::string_view bytes);
-    std::string with_close(std::string_view head) const;
+    bool wait_for_body() const;
+    bool send_continue();
+    Clock::time_point body_deadline() const;
+    Clock::time_point slowest(Clock::time_point since, std::uint64_t bytes) const;
 
-    int fd_;
-    StreamLimits limits_;
-    std::string buffer_; // received, not yet used
-    std::size_t buffer_at_ = 0;
-    std::string ready_; // for httplib: head, then pieces of body
-    std::size_t ready_at_ = 0;
-    bool chunked_ = false, continue_due_ = false, read_failed_ = false, write_failed_ = false;
-    std::uint64_t body_left_ = 0, body_received_ = 0;
-    ChunkDecoder decoder_;
+    OpenConnections::Entry entry_;
+    const StreamLimits& limits_;
+    Phase phase_ = Phase::request;
+    RequestIntake intake_;
+    AnswerOutbox outbox_;
+    std::size_t requests_ = 1, dropped_ = 0;
+    bool closes_ = false, continue_due_ = false, read_failed_ = false;
     std::optional<BodyPlaces::Place> place_; // while the body is on its way
-    Clock::time_point body_since_, write_since_;
+    Clock::time_point head_since_, body_since_, begun_, write_since_;
+    Clock::time_point moved_; // bytes came or went, or the phase began
     int status_ = 0;
-    std::uint64_t bytes_written_ = 0;
 };
 
 } // namespace server

@@ -14,14 +14,8 @@ namespace server {
 namespace {
 
 constexpr const char* kProblemType = "application/problem+json";
-constexpr const char* kMethods = "GET, HEAD, POST, PUT, PATCH, DELETE, OPTIONS";
-
-bool is_known_method(const std::string& method)
-{
-    static constexpr std::array<std::string_view, 7> known{
-        "GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"};
-    return std::find(known.begin(), known.end(), method) != known.end();
-}
+// Of an answer, before other connections have their turn on the thread.
+constexpr std::size_t kBurst = 4 << 20;
 
 // Fields that are the guard's own business, or that httplib would stumble over.
 bool is_kept_back(const std::string& name)
@@ -69,6 +63,15 @@ void explain(const httplib::Request& request, httplib::Response& response)
 }
 
 } // namespace
+
+struct GuardedServer::StillWanted {
+    const GuardedServer* server;
+    ConnectionStream* stream;
+    bool operator()(std::uint64_t, std::uint64_t) const
+    {
+        return !server->stopping_ && stream->peer_is_there();
+    }
+};
 
 GuardedServer::GuardedServer(const GuardOptions& options, const Log& log, const Dispatch& dispatch)
     : options_(options), log_(log), bodies_(options.bodies_per_client)
@@ -119,33 +122,61 @@ void GuardedServer::register_handlers(const Dispatch& dispatch)
             log_.write(LogLevel::error, "http_failure");
         }
     });
-    set_post_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+    set_post_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
         const std::string id = request.get_header_value(kRequestId);
         response.set_header(kRequestId, id.empty() ? make_job_id() : id);
         response.set_header("X-Content-Type-Options", "nosniff");
+        take_body_over(request, response);
     });
+}
+
+// httplib would hold its thread until the client has read all: it writes the head, and the rest is ours.
+void GuardedServer::take_body_over(const httplib::Request& request, httplib::Response& response) const
+{
+    const auto* const wanted = request.progress.target<StillWanted>();
+    if (!response.content_provider_ || wanted == nullptr) return;
+    if (request.method != "HEAD")
+        wanted->stream->give_body(std::move(response.content_provider_), response.content_length_);
+    response.content_provider_ = nullptr;
 }
 
 void GuardedServer::start(const std::string& host, int port)
 {
     listener_.emplace(host, port, log_);
-    pool_.emplace(options_.threads, options_.queue);
+    parked_.emplace(
+        connections_,
+        options_.parking,
+        ParkedConnections::Callbacks{[this](Connection connection) { go_on(std::move(connection)); },
+                                     [this](Connection connection, ParkedConnections::Why why) {
+                                         guarded([&] { give_up(std::move(connection), why); });
+                                     }});
+    const auto work = [this](Connection connection) { guarded([&] { serve(std::move(connection)); }); };
+    workers_.emplace(options_.threads, options_.queue, work);
+    body_workers_.emplace(options_.body_threads, options_.queue, work);
     port_ = listener_->port();
     svr_sock_ = listener_->descriptor(); // without one httplib cuts its answers off
     listening_ = true;
     accepting_ = std::thread([this] { accept_all(); });
 }
 
+// What fails here concerns one connection, which closes.
+template <typename Work>
+void GuardedServer::guarded(Work&& work) const
+{
+    try {
+        work();
+    } catch (const std::exception& error) {
+        log_.write(LogLevel::error, "connection_failure", {{"what", error.what()}});
+    }
+}
+
 void GuardedServer::accept_all()
 {
     for (int fd = listener_->accept(); fd >= 0; fd = listener_->accept()) {
-        try {
-            connections_.add(fd);
-            if (!pool_->enqueue([this, fd] { handle_connection(fd); })) refuse_unread(fd);
-        } catch (const std::exception& error) { // no memory for it: the next may find some
-            connections_.close(fd);
-            log_.write(LogLevel::error, "connection_failure", {{"what", error.what()}});
-        }
+        // No memory for it: the next may find some.
+        guarded([&] {
+            parked_->park(std::make_unique<ConnectionStream>(connections_.add(fd), options_.stream));
+        });
     }
     listening_ = false;
     if (listener_->broken() == 0) return;
@@ -162,161 +193,170 @@ void GuardedServer::stop()
     if (!accepting_.joinable()) return;
     listener_->stop();
     accepting_.join();
-    if (!pool_->finish_by(std::chrono::steady_clock::now() + options_.drain))
+    parked_->drain();
+    if (!connections_.wait_for_none(std::chrono::steady_clock::now() + options_.drain))
         log_.write(LogLevel::warning,
                    "connections_cut_off",
                    {{"count", static_cast<std::int64_t>(connections_.cut())}});
-    pool_->shutdown();
+    parked_->stop();
+    workers_->shutdown();
+    body_workers_->shutdown();
     listener_.reset();
 }
 
-// Not a word is read, and nothing here may block: this is the accepting thread.
-void GuardedServer::refuse_unread(int fd)
+GuardedServer::Load GuardedServer::load() const
 {
-    static constexpr std::string_view answer =
-        "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 1\r\n"
-        "Content-Length: 0\r\n\r\n";
-    if (send(fd, answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
-        log_.write(LogLevel::warning, "refusal_unsent");
-    connections_.close(fd);
-    log_.write(
-        LogLevel::warning, "connection_refused", {{"reason", "every thread is taken and the queue is full"}});
+    return {connections_.count(),
+            parked_->count(),
+            workers_->queued() + body_workers_->queued(),
+            workers_->threads(),
+            body_workers_->threads()};
 }
 
-void GuardedServer::handle_connection(int fd)
+void GuardedServer::go_on(Connection connection)
 {
+    guarded([&] {
+        if (connection->phase() == ConnectionStream::Phase::answer)
+            workers_->enqueue(connection, WorkerPool::What::goes_on);
+        else if (connection->intake().stage() == RequestIntake::Stage::faulty)
+            refuse(std::move(connection), HeadFault(connection->intake().fault()));
+        else
+            hand_to_thread(std::move(connection));
+    });
+}
+
+void GuardedServer::hand_to_thread(Connection connection)
+{
+    static const HeadFault busy{503, "busy", "every thread is taken and the queue is full: ask again soon"};
+    if (connection->intake().stage() == RequestIntake::Stage::ready) {
+        if (!workers_->enqueue(connection)) refuse(std::move(connection), busy);
+        return;
+    }
+    auto place = bodies_.enter(connection->client());
+    if (!place)
+        return refuse(std::move(connection),
+                      {429,
+                       "too_many_bodies",
+                       "this client's address sends " + std::to_string(options_.bodies_per_client) +
+                           " large bodies already, which is all that one may: let some arrive first"});
+    connection->hold_until_body_is_read(std::move(*place));
+    if (!body_workers_->enqueue(connection)) refuse(std::move(connection), busy);
+}
+
+void GuardedServer::give_up(Connection connection, ParkedConnections::Why why)
+{
+    using Stage = RequestIntake::Stage;
+    if (connection->phase() == ConnectionStream::Phase::answer) return log_request(*connection, false);
+    if (connection->phase() == ConnectionStream::Phase::farewell) return;
+    const bool silent = connection->intake().stage() == Stage::nothing;
+    if (why == ParkedConnections::Why::late) {
+        if (silent) return;
+        const bool in_head = connection->intake().stage() == Stage::head;
+        return refuse(std::move(connection),
+                      {408,
+                       "request_timeout",
+                       in_head ? "the header did not come in time" : "the body did not come in time"});
+    }
+    if (silent && connection->requests() > 1) return; // idle: its client expects to be closed one day
+    // It has to go at once: whether the client hears why, it will see.
+    connection->begin_answer();
+    write_refusal(*connection, {503, "too_many_connections", "others need the place: ask again soon"});
+    connection->send_answer(kBurst);
+    log_request(*connection, false);
+}
+
+void GuardedServer::serve(Connection connection)
+{
+    if (connection->phase() == ConnectionStream::Phase::request) answer(*connection);
+    send_rest(std::move(connection));
+}
+
+void GuardedServer::answer(ConnectionStream& stream)
+{
+    stream.begin_answer();
+    const bool last = stopping_ || stream.requests() >= options_.requests_per_connection;
+    bool closed = false;
+    const bool served = process_request(
+        stream, last, closed, [&](httplib::Request& request) { give_headers(stream, request); });
+    if (last || closed || !served) stream.close_after_answer();
+}
+
+void GuardedServer::send_rest(Connection connection)
+{
+    AnswerOutbox::Sent sent = AnswerOutbox::Sent::failed;
     try {
-        ConnectionStream stream(fd, options_.stream);
-        serve(stream);
-    } catch (const std::exception& error) {
-        log_.write(LogLevel::error, "connection_failure", {{"what", error.what()}});
-    }
-    connections_.close(fd);
-}
-
-void GuardedServer::serve(ConnectionStream& stream)
-{
-    for (std::size_t number = 1; number <= options_.requests_per_connection; ++number) {
-        std::string block;
-        const auto give_up = [&] { return stopping_ || (number > 1 && pool_->backlog()); };
-        switch (stream.await_head(block, give_up)) {
-        case ConnectionStream::Await::closed:
-            return;
-        case ConnectionStream::Await::too_slow:
-            return refuse(stream, {}, {408, "request_timeout", "the header did not come in time"});
-        case ConnectionStream::Await::too_large:
-            return refuse(stream,
-                          {},
-                          {431,
-                           "headers_too_large",
-                           "the header may have " + std::to_string(kMaxHeadBytes) + " bytes"});
-        case ConnectionStream::Await::ready:
-            break;
-        }
-        const bool last = number == options_.requests_per_connection || give_up();
-        if (!serve_one(stream, block, last)) return;
-    }
-}
-
-bool GuardedServer::serve_one(ConnectionStream& stream, const std::string& block, bool last)
-{
-    const auto since = std::chrono::steady_clock::now();
-    RequestHead head;
-    if (const auto fault = read_head(block, head)) {
-        refuse(stream, head, *fault);
-        return false;
-    }
-    if (!is_known_method(head.method)) {
-        refuse(stream, head, {405, "method_not_allowed", "methods: " + std::string(kMethods)});
-        return false;
-    }
-    stream.begin(head);
-    if (!place_body(stream, head)) {
-        refuse(stream,
-               head,
-               {429,
-                "too_many_bodies",
-                "this client's address sends " + std::to_string(options_.bodies_per_client) +
-                    " bodies already, which is all that one may: let some arrive first"});
-        return false;
-    }
-    bool closed = false, served = false;
-    try {
-        served = process_request(
-            stream, last, closed, [&](httplib::Request& request) { give_headers(head, stream, request); });
+        sent = connection->send_answer(kBurst);
     } catch (const std::exception& error) { // the source of a body: its head has gone, so it is cut off
-        log_.write(
-            LogLevel::error, "answer_cut_off", {{"what", error.what()}, {"request_id", head.request_id}});
+        log_.write(LogLevel::error,
+                   "answer_cut_off",
+                   {{"what", error.what()}, {"request_id", connection->intake().head().request_id}});
     }
-    log_request(stream, head, served, since);
-    if (!stream.body_complete() && !stream.write_failed()) stream.linger([this] { return pool_->backlog(); });
-    return served && !closed && !stream.write_failed() && stream.body_complete();
+    switch (sent) {
+    case AnswerOutbox::Sent::blocked:
+        return parked_->park(std::move(connection));
+    case AnswerOutbox::Sent::more:
+        workers_->enqueue(connection, WorkerPool::What::goes_on);
+        return;
+    case AnswerOutbox::Sent::failed:
+        return log_request(*connection, false);
+    case AnswerOutbox::Sent::done:
+        break;
+    }
+    log_request(*connection, true);
+    if (!connection->closes_after_answer() && connection->body_complete())
+        connection->next_request();
+    else if (connection->needs_farewell())
+        connection->begin_farewell();
+    else
+        return;
+    parked_->park(std::move(connection));
 }
 
-// A small body that comes with its head, or close behind it, keeps nobody waiting.
-bool GuardedServer::place_body(ConnectionStream& stream, const RequestHead& head)
+void GuardedServer::refuse(Connection connection, const HeadFault& fault)
 {
-    constexpr std::chrono::milliseconds kMoment{20};
-    const bool announced = head.chunked || head.content_length.value_or(0) > 0;
-    if (!announced || stream.body_comes_within(kMoment)) return true;
-    std::string address;
-    int port = 0;
-    stream.get_remote_ip_and_port(address, port);
-    auto place = bodies_.enter(address);
-    if (!place) return false;
-    stream.hold_until_body_is_read(std::move(*place));
-    return true;
+    connection->begin_answer();
+    write_refusal(*connection, fault);
+    send_rest(std::move(connection));
 }
 
-void GuardedServer::give_headers(const RequestHead& head,
-                                 ConnectionStream& stream,
-                                 httplib::Request& request) const
+void GuardedServer::write_refusal(ConnectionStream& stream, const HeadFault& fault) const
 {
+    const std::string id = stream.request_id();
+    const std::string body = problem_text(fault.status, fault.code, fault.detail, id);
+    const std::string answer =
+        "HTTP/1.1 " + std::to_string(fault.status) + " Refused\r\nConnection: close\r\n" +
+        (fault.status == 405 ? std::string("Allow: ") + kKnownMethods + "\r\n" : std::string()) +
+        (fault.status == 429 || fault.status == 503 ? "Retry-After: 1\r\n" : "") +
+        "Content-Type: " + kProblemType + "\r\nX-Content-Type-Options: nosniff\r\n" + kRequestId + ": " + id +
+        "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+    stream.write(answer.data(), answer.size());
+    stream.close_after_answer();
+}
+
+void GuardedServer::give_headers(ConnectionStream& stream, httplib::Request& request) const
+{
+    const RequestHead& head = stream.intake().head();
     for (const auto& [name, value] : head.fields)
         if (!is_kept_back(name))
             request.headers.emplace(strcasecmp(name.c_str(), "Content-Type") == 0 ? kBodyType : name, value);
     request.headers.emplace(kRequestId, head.request_id);
-    request.progress = [this, &stream](std::uint64_t, std::uint64_t) {
-        return !stopping_ && stream.peer_is_there();
-    };
+    request.progress = StillWanted{this, &stream};
 }
 
-void GuardedServer::refuse(ConnectionStream& stream, const RequestHead& head, const HeadFault& fault) const
+void GuardedServer::log_request(const ConnectionStream& stream, bool complete) const
 {
-    const auto since = std::chrono::steady_clock::now();
-    RequestHead shown = head;
-    if (shown.request_id.empty()) shown.request_id = make_job_id();
-    const std::string body = problem_text(fault.status, fault.code, fault.detail, shown.request_id);
-    stream.begin({});
-    const std::string answer =
-        "HTTP/1.1 " + std::to_string(fault.status) + " Refused\r\nConnection: close\r\n" +
-        (fault.status == 405 ? std::string("Allow: ") + kMethods + "\r\n" : std::string()) +
-        (fault.status == 429 ? "Retry-After: 1\r\n" : "") + "Content-Type: " + kProblemType +
-        "\r\nX-Content-Type-Options: nosniff\r\n" + kRequestId + ": " + shown.request_id +
-        "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
-    if (stream.write(answer.data(), answer.size()) > 0) stream.linger([this] { return pool_->backlog(); });
-    log_request(stream, shown, true, since);
-}
-
-void GuardedServer::log_request(const ConnectionStream& stream,
-                                const RequestHead& head,
-                                bool served,
-                                std::chrono::steady_clock::time_point since) const
-{
-    std::string address;
-    int port = 0;
-    stream.get_remote_ip_and_port(address, port);
+    const RequestHead& head = stream.intake().head();
     const double ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - stream.begun()).count();
     log_.write(LogLevel::info,
                "request",
                {{"method", head.method},
                 {"path", std::string_view(head.target).substr(0, head.target.find('?'))},
                 {"status", static_cast<std::int64_t>(stream.status())},
                 {"ms", ms},
-                {"bytes", static_cast<std::int64_t>(stream.bytes_written())},
-                {"remote", address},
-                {"complete", served && !stream.write_failed()},
+                {"bytes", static_cast<std::int64_t>(stream.bytes_sent())},
+                {"remote", stream.address()},
+                {"complete", complete},
                 {"request_id", head.request_id}});
 }
 

@@ -16,6 +16,8 @@ namespace server {
 namespace {
 
 constexpr int kBacklog = 1024;
+// What the kernel keeps for one that reads slowly, beyond what is on its way; it would keep megabytes.
+constexpr int kMostUnsent = 256 << 10;
 constexpr std::chrono::milliseconds kPause{20}; // of a shortage: short against a client's patience
 
 struct FreeAddresses {
@@ -110,6 +112,7 @@ int Listener::accept()
         if (fd >= 0) {
             const int yes = 1;
             setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+            setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kMostUnsent, sizeof kMostUnsent);
             short_ = false;
             return fd;
         }

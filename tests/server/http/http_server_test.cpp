@@ -34,6 +34,18 @@ TEST(HttpServer, TellsStrangersWhereToGo)
         EXPECT_EQ(service.get(path).status, 404) << path;
 }
 
+TEST(HttpServer, LinksToEveryResourceFromItsRoot)
+{
+    const LiveService service;
+    std::set<std::string> linked, served;
+    const nlohmann::json root = json_of(service.get("/")); // whose links are iterated over
+    for (const auto& link : root.at("links"))
+        linked.insert(link.get<std::string>());
+    for (const std::string& route : service.http.routes())
+        served.insert(route.substr(route.find(' ') + 1));
+    EXPECT_EQ(linked, served);
+}
+
 TEST(HttpServer, NamesTheMethodsThatAPathKnows)
 {
     const LiveService service;
@@ -237,18 +249,27 @@ TEST(HttpServer, IsNotReadyWhileTheDiskIsFull)
         EXPECT_EQ(fetch(port, "GET", "/readyz").status, 200);
 }
 
-TEST(HttpServer, StaysHealthyWhileSlowClientsHoldEveryThread)
+TEST(HttpServer, ServesOnBothListenersWhileManyAreSlow)
 {
     renderer::Limits limits;
     limits.waiters = 1;
     const LiveService service(limits);
+    const std::vector<int> ports{service.http.port(), service.http.health_port()};
     std::vector<std::unique_ptr<RawConnection>> slow;
     for (int i = 0; i < 40; ++i) {
-        slow.push_back(std::make_unique<RawConnection>(service.http.port()));
-        slow.back()->send("GET / HTTP/1.1\r\nX: ");
+        for (const int port : ports) {
+            slow.push_back(std::make_unique<RawConnection>(port));
+            slow.back()->send("GET / HTTP/1.1\r\nX: ");
+            slow.push_back(std::make_unique<RawConnection>(port));
+            slow.back()->send("POST /v1/jobs HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\n{");
+            slow.push_back(std::make_unique<RawConnection>(port)); // and one that says nothing
+        }
     }
-    for (int i = 0; i < 20; ++i)
-        EXPECT_EQ(fetch(service.http.health_port(), "GET", "/healthz").status, 200);
+    for (int i = 0; i < 20; ++i) {
+        for (const int port : ports)
+            EXPECT_EQ(fetch(port, "GET", "/healthz").status, 200);
+        EXPECT_EQ(service.submit(quick_job(i)).status, 202);
+    }
 }
 
 } // namespace

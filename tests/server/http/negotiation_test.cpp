@@ -20,10 +20,35 @@ TEST(Prefer, WaitIsReadAmongOtherPreferences)
     EXPECT_EQ(server::preferred_wait_s("wait=99999999999999999999999"), UINT64_MAX);
 }
 
+TEST(Prefer, WaitMayStandInQuotes)
+{
+    EXPECT_EQ(server::preferred_wait_s("wait=\"1\""), 1u);
+    EXPECT_EQ(server::preferred_wait_s("wait = \"30\"; x=\"a;b\""), 30u);
+    EXPECT_EQ(server::preferred_wait_s(R"(wait="\3\0")"), 30u);
+    EXPECT_EQ(server::preferred_wait_s(R"(odd="a, wait=5, \"", wait=7)"), 7u)
+        << "what is quoted asks nothing";
+}
+
 TEST(Prefer, MalformedWishesAreLeftUnheard)
 {
-    for (const char* text :
-         {"", "wait", "wait=", "wait=abc", "wait=-1", "wait=1.5", "wait=3s", "wait=1=2", ",,;;,=", "waits=3"})
+    for (const char* text : {"",
+                             "wait",
+                             "wait=",
+                             "wait=abc",
+                             "wait=-1",
+                             "wait=1.5",
+                             "wait=3s",
+                             "wait=1=2",
+                             ",,;;,=",
+                             "waits=3",
+                             "wait=\"",
+                             "wait=\"\"",
+                             "wait=\"1",
+                             "wait=1\"",
+                             "wait=\" 1\"",
+                             "wait=\"1\"2",
+                             "odd=\"a, wait=5",
+                             "\\"})
         EXPECT_EQ(server::preferred_wait_s(text), std::nullopt) << text;
 }
 

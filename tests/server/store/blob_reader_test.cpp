@@ -75,6 +75,24 @@ TEST(BlobReader, HandsOutNoMoreThanAPieceAtATime)
     EXPECT_EQ(reader->at(2 * kBlobPiece + 1).size(), 4U);
 }
 
+TEST(BlobReader, ProvesAPieceAnewThatItLetGo)
+{
+    const TempFolder folder;
+    BlobStore blobs(folder.path());
+    const std::string text = noise(2 * kBlobPiece), digest = put(blobs, text);
+    const auto reader = blobs.open(Kind::asset, digest);
+    reader->at(5);
+    reader->let_go();
+    EXPECT_TRUE(read_from(*reader, 5) == text.substr(5));
+    reader->at(5);
+    std::fstream(blobs.path(Kind::asset, digest), std::ios::in | std::ios::out)
+        .seekp(7)
+        .put(static_cast<char>(~text[7]));
+    EXPECT_NO_THROW(reader->at(6)) << "held";
+    reader->let_go();
+    EXPECT_THROW(reader->at(6), server::StoreError);
+}
+
 TEST(BlobReader, IsNotToBeHadOfWhatIsNotThere)
 {
     const TempFolder folder;

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -43,6 +44,19 @@ protected:
         server_->start("127.0.0.1", 0);
         port = server_->port();
     }
+    void restart(const GuardOptions& options)
+    {
+        TearDown();
+        start(options);
+    }
+    // False: it did not come to pass, although a patient client would have gone home by now.
+    bool comes_to_pass(const std::function<bool(const GuardedServer::Load&)>& wanted) const
+    {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (!wanted(server_->load()) && std::chrono::steady_clock::now() < end)
+            std::this_thread::sleep_for(milliseconds(5));
+        return wanted(server_->load());
+    }
     void SetUp() override { start({}); }
     void TearDown() override
     {
@@ -58,6 +72,7 @@ protected:
         if (request.path == "/read") {
             std::string body;
             const bool complete = (*content)([&](const char* data, std::size_t size) {
+                reading += body.empty() ? 1u : 0u;
                 body.append(data, size);
                 return true;
             });
@@ -92,7 +107,13 @@ protected:
     std::unique_ptr<GuardedServer> server_;
     int port = 0;
     std::promise<void> began, ended;
+    std::atomic<unsigned> reading = 0; // bodies of which something has been read
 };
+
+// The head of a body too large to be waited for, and enough of it for a thread.
+const std::string kLargeHead = "PUT /read HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\n";
+const std::string kLargeStart = kLargeHead + std::string(70000, 'x');
+const std::string kLargeRest(30000, 'x');
 
 TEST_F(Guarded, ServesManyRequestsOnOneConnectionAlsoSentAhead)
 {
@@ -183,7 +204,8 @@ TEST_F(Guarded, ClosesAfterAnAnswerThatCameBeforeTheBody)
 {
     RawConnection connection(port);
     ASSERT_TRUE(connection.send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\nGET /smuggled "
-                                "HTTP/1.1\r\nHost: a\r\n\r\n"));
+                                "HTTP/1.1\r\nHost: a\r\n\r\n" +
+                                std::string(70000, 'x')));
     const auto answer = connection.read();
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->header("connection"), "close");
@@ -242,8 +264,7 @@ TEST_F(Guarded, CutsOffWhoSendsAHeaderTooSlowly)
     GuardOptions options;
     options.threads = 1;
     options.stream.head = milliseconds(100);
-    TearDown();
-    start(options);
+    restart(options);
     RawConnection slow(port);
     ASSERT_TRUE(slow.send("GET / HTTP/1.1\r\nHost: a\r\nX: "));
     const auto answer = slow.read();
@@ -255,17 +276,52 @@ TEST_F(Guarded, CutsOffWhoSendsAHeaderTooSlowly)
 TEST_F(Guarded, CutsOffWhoFallsSilentWithinABody)
 {
     GuardOptions options;
-    options.threads = 1;
+    options.threads = options.body_threads = 1;
     options.stream.idle_body = milliseconds(100);
-    TearDown();
-    start(options);
+    restart(options);
     RawConnection slow(port);
     ASSERT_TRUE(slow.send("POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 10\r\n\r\nabc"));
-    const auto answer = slow.read();
+    auto answer = slow.read();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 408);
+    EXPECT_TRUE(slow.wait_closed());
+
+    RawConnection large(port);
+    ASSERT_TRUE(large.send(kLargeStart));
+    answer = large.read();
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->status, 400);
-    EXPECT_TRUE(slow.wait_closed());
+    EXPECT_EQ(answer->body, "incomplete");
+    EXPECT_TRUE(large.wait_closed());
     expect_alive();
+}
+
+TEST_F(Guarded, CutsOffWhoSendsABodyBelowTheRate)
+{
+    GuardOptions options;
+    options.stream.grace = milliseconds(0);
+    options.stream.min_rate = std::uint64_t{1} << 60; // nobody is that fast
+    restart(options);
+    for (const std::string& start : {kLargeHead + "x", kLargeStart}) {
+        RawConnection slow(port);
+        ASSERT_TRUE(slow.send(start));
+        const auto answer = slow.read();
+        ASSERT_TRUE(answer);
+        EXPECT_TRUE(answer->status == 408 || answer->status == 400) << answer->status;
+        EXPECT_TRUE(slow.wait_closed());
+    }
+}
+
+TEST_F(Guarded, CutsOffABodyThatTakesTooLongAltogether)
+{
+    GuardOptions options;
+    options.stream.whole_body = milliseconds(100);
+    restart(options);
+    RawConnection slow(port);
+    ASSERT_TRUE(slow.send(kLargeHead));
+    while (slow.send("x"))
+        std::this_thread::sleep_for(milliseconds(1)); // never silent for long
+    EXPECT_TRUE(comes_to_pass([](const auto& load) { return load.connections == 0; }));
 }
 
 TEST_F(Guarded, CutsOffWhoDoesNotReadTheAnswer)
@@ -273,11 +329,12 @@ TEST_F(Guarded, CutsOffWhoDoesNotReadTheAnswer)
     GuardOptions options;
     options.threads = 1;
     options.stream.idle_write = milliseconds(100);
-    TearDown();
-    start(options);
+    restart(options);
     RawConnection slow(port, 4096);
     ASSERT_TRUE(slow.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
-    expect_alive(); // the one thread is free again
+    ASSERT_TRUE(slow.read_head());
+    EXPECT_TRUE(comes_to_pass([](const auto& load) { return load.connections == 0; }));
+    EXPECT_LT(slow.read_bytes(kBig), kBig);
 }
 
 TEST_F(Guarded, CutsOffWhoReadsTheAnswerBelowTheRate)
@@ -285,90 +342,218 @@ TEST_F(Guarded, CutsOffWhoReadsTheAnswerBelowTheRate)
     GuardOptions options;
     options.stream.grace = milliseconds(0);
     options.stream.min_rate = std::uint64_t{1} << 60; // nobody is that fast
-    TearDown();
-    start(options);
+    restart(options);
     RawConnection slow(port, 4096);
     ASSERT_TRUE(slow.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
     EXPECT_THROW(slow.read(), std::runtime_error); // the body ends early
     expect_alive();
 }
 
-TEST_F(Guarded, RefusesConnectionsBeyondThreadsAndQueue)
+TEST_F(Guarded, RefusesRequestsBeyondThreadsAndQueue)
 {
     GuardOptions options;
     options.threads = 1;
     options.queue = 1;
-    TearDown();
-    start(options);
+    restart(options);
     RawConnection holds(port);
     ASSERT_TRUE(holds.send("GET /wait HTTP/1.1\r\nHost: a\r\n\r\n"));
     began.get_future().wait();
     RawConnection waits(port);
+    ASSERT_TRUE(waits.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    ASSERT_TRUE(comes_to_pass([](const auto& load) { return load.queued == 1; }));
     RawConnection refused(port);
+    ASSERT_TRUE(refused.send("GET / HTTP/1.1\r\nHost: a\r\nX-Request-Id: mine-2\r\n\r\n"));
     const auto answer = refused.read();
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->status, 503);
     EXPECT_EQ(answer->header("retry-after"), "1");
+    EXPECT_EQ(answer->header("x-request-id"), "mine-2");
     holds.hang_up();
-    ASSERT_TRUE(waits.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
     const auto served = waits.read();
     ASSERT_TRUE(served);
     EXPECT_EQ(served->body, "ok");
 }
 
-TEST_F(Guarded, LetsOneClientHaveAFewBodiesOnTheirWayAndNoMore)
+TEST_F(Guarded, LetsOneClientHaveAFewLargeBodiesOnTheirWayAndNoMore)
 {
     GuardOptions options;
-    options.threads = 3;
+    options.body_threads = 3;
     options.bodies_per_client = 2;
-    TearDown();
-    start(options);
-    const std::string head = "POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\n";
+    restart(options);
     const std::string chunks = "POST /read HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n";
     RawConnection first(port), second(port);
-    ASSERT_TRUE(first.send(head + "h"));
-    ASSERT_TRUE(second.send(chunks + "1\r\nh\r\n"));
-    std::this_thread::sleep_for(milliseconds(200)); // both hold a thread
-    for (const std::string& start : {head + "h", chunks}) {
-        RawConnection third(port);
-        ASSERT_TRUE(third.send(start));
-        const auto answer = third.read();
-        ASSERT_TRUE(answer);
-        EXPECT_EQ(answer->status, 429);
-        EXPECT_EQ(answer->header("retry-after"), "1");
-        EXPECT_NE(answer->body.find("too_many_bodies"), std::string::npos) << answer->body;
-    }
-    EXPECT_EQ(fetch(port, "GET", "/").body, "ok") << "the last thread is for others";
-    RawConnection whole(port);
-    ASSERT_TRUE(whole.send(head + "hello"));
-    EXPECT_EQ(whole.read().value().body, "hello") << "that came at once";
+    ASSERT_TRUE(first.send(kLargeStart));
+    ASSERT_TRUE(second.send(chunks + "11170\r\n" + std::string(70000, 'x') + "\r\n"));
+    while (reading < 2)
+        std::this_thread::yield();
+    RawConnection third(port);
+    ASSERT_TRUE(third.send(kLargeStart));
+    const auto refusal = third.read();
+    ASSERT_TRUE(refusal);
+    EXPECT_EQ(refusal->status, 429);
+    EXPECT_EQ(refusal->header("retry-after"), "1");
+    EXPECT_NE(refusal->body.find("too_many_bodies"), std::string::npos) << refusal->body;
+    RawConnection other(port, 0, "127.0.0.2");
+    ASSERT_TRUE(other.send(kLargeStart + kLargeRest));
+    EXPECT_EQ(other.read().value().body.size(), 100000u) << "another client has places of its own";
 
-    ASSERT_TRUE(first.send("ello"));
-    EXPECT_EQ(first.read().value().body, "hello");
+    ASSERT_TRUE(first.send(kLargeRest));
+    EXPECT_EQ(first.read().value().body.size(), 100000u);
     RawConnection next(port); // has the place of the first, whose connection stays
-    ASSERT_TRUE(next.send(head + "h"));
-    std::this_thread::sleep_for(milliseconds(100));
-    ASSERT_TRUE(next.send("ello"));
-    EXPECT_EQ(next.read().value().body, "hello");
+    ASSERT_TRUE(next.send(kLargeStart + kLargeRest));
+    EXPECT_EQ(next.read().value().body.size(), 100000u);
     ASSERT_TRUE(second.send("0\r\n\r\n"));
-    EXPECT_EQ(second.read().value().body, "h");
+    EXPECT_EQ(second.read().value().body.size(), 70000u);
 }
 
-TEST_F(Guarded, ServesOthersWhileManyDripBodies)
+// Connections of every slow kind. As many as descriptors allow: both ends are in this process.
+class SlowCrowd {
+public:
+    explicit SlowCrowd(int port)
+    {
+        for (int i = 0; i < 50; ++i) {
+            add(port, "");
+            add(port, "GET / HTTP/1.1\r\nHost: a\r\nX: ");
+            add(port, "POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 10\r\n\r\nabc");
+            add(port, kLargeHead + "x");
+            add(port, "POST /read HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nab");
+            idle.push_back(std::make_unique<RawConnection>(port));
+            idle.back()->send("GET / HTTP/1.1\r\nHost: a\r\n\r\n");
+        }
+        for (int i = 0; i < 30; ++i) {
+            readers.push_back(std::make_unique<RawConnection>(port, 4096));
+            readers.back()->send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n");
+            readers.back()->read_head();
+        }
+        for (const auto& connection : idle)
+            connection->read();
+    }
+    std::size_t size() const { return senders.size() + idle.size() + readers.size(); }
+
+    std::vector<std::unique_ptr<RawConnection>> senders, idle, readers;
+
+private:
+    void add(int port, const std::string& bytes)
+    {
+        senders.push_back(std::make_unique<RawConnection>(port));
+        senders.back()->send(bytes);
+    }
+};
+
+TEST_F(Guarded, HoldsNoThreadForConnectionsThatWait)
 {
     GuardOptions options;
-    options.threads = 6;
-    options.bodies_per_client = 2;
-    TearDown();
-    start(options);
-    std::vector<std::unique_ptr<RawConnection>> dripping;
-    for (int i = 0; i < 100; ++i) {
-        dripping.push_back(std::make_unique<RawConnection>(port));
-        dripping.back()->send("PUT /read HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\nx");
+    options.threads = 2;
+    options.stream.head = options.stream.keep_alive = options.stream.idle_body = options.stream.idle_write =
+        options.stream.grace = std::chrono::hours(1);
+    restart(options);
+    const SlowCrowd crowd(port);
+    EXPECT_TRUE(comes_to_pass([&](const auto& load) { return load.parked == crowd.size(); }));
+    EXPECT_EQ(server_->load().body_threads, 0u) << "nor of those for large bodies";
+    RawConnection waits(port); // one thread of two
+    ASSERT_TRUE(waits.send("GET /wait HTTP/1.1\r\nHost: a\r\n\r\n"));
+    began.get_future().wait();
+    for (int i = 0; i < 20; ++i)
+        expect_alive();
+    EXPECT_EQ(server_->load().queued, 0u);
+    waits.hang_up();
+    ended.get_future().wait();
+    for (const auto& connection : crowd.idle) { // and each goes on when its client does
+        ASSERT_TRUE(connection->send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+        EXPECT_EQ(connection->read().value().body, "ok");
     }
-    const auto since = std::chrono::steady_clock::now();
+    for (std::size_t i = 0; i < crowd.senders.size(); i += 5) {
+        ASSERT_TRUE(crowd.senders[i + 1]->send("y\r\n\r\n"));
+        EXPECT_EQ(crowd.senders[i + 1]->read().value().body, "ok");
+        ASSERT_TRUE(crowd.senders[i + 2]->send("defghij"));
+        EXPECT_EQ(crowd.senders[i + 2]->read().value().body, "abcdefghij");
+        ASSERT_TRUE(crowd.senders[i + 4]->send("cde\r\n0\r\n\r\n"));
+        EXPECT_EQ(crowd.senders[i + 4]->read().value().body, "abcde");
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(crowd.readers[i]->read_bytes(kBig), kBig);
+}
+
+TEST_F(Guarded, DropsWhateverIsSlowAtItsDeadline)
+{
+    GuardOptions options;
+    options.stream.head = options.stream.keep_alive = options.stream.idle_body = options.stream.idle_write =
+        milliseconds(1000);
+    restart(options);
+    const SlowCrowd crowd(port);
+    EXPECT_TRUE(comes_to_pass([](const auto& load) { return load.connections == 0; }));
+    for (std::size_t i = 0; i < crowd.senders.size(); ++i) {
+        const auto answer = crowd.senders[i]->read();
+        if (i % 5 == 0)
+            EXPECT_FALSE(answer) << "nothing was asked";
+        else if (answer)
+            EXPECT_EQ(answer->status, 408);
+        else
+            ADD_FAILURE() << "no answer to " << i;
+    }
     expect_alive();
-    EXPECT_LT(std::chrono::steady_clock::now() - since, std::chrono::seconds(5));
+}
+
+TEST_F(Guarded, DisplacesTheLongestWaitingOfAClientThatHasTooMany)
+{
+    GuardOptions options;
+    options.parking.per_client = 4;
+    restart(options);
+    std::vector<std::unique_ptr<RawConnection>> mine;
+    for (int i = 0; i < 4; ++i) {
+        mine.push_back(std::make_unique<RawConnection>(port));
+        ASSERT_TRUE(mine.back()->send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+        ASSERT_TRUE(mine.back()->read());
+        const std::size_t here = mine.size();
+        ASSERT_TRUE(comes_to_pass([&](const auto& load) { return load.parked == here; }));
+    }
+    RawConnection other(port, 0, "127.0.0.2");
+    ASSERT_TRUE(other.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+    EXPECT_EQ(other.read().value().body, "ok") << "counts for itself";
+    expect_alive(); // the fifth
+    EXPECT_FALSE(mine[0]->read()) << "closed for it";
+    for (std::size_t i = 1; i < 4; ++i) {
+        ASSERT_TRUE(mine[i]->send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+        EXPECT_EQ(mine[i]->read().value().body, "ok");
+    }
+}
+
+TEST_F(Guarded, LetsNewcomersInWhenACrowdFillsIt)
+{
+    GuardOptions options;
+    options.parking.connections = 20;
+    options.stream.head = options.stream.keep_alive = std::chrono::hours(1);
+    restart(options);
+    std::vector<std::unique_ptr<RawConnection>> crowd;
+    for (int i = 0; i < 30; ++i) {
+        crowd.push_back(std::make_unique<RawConnection>(port));
+        ASSERT_TRUE(crowd.back()->send("GET / HTTP/1.1\r\nX: "));
+    }
+    RawConnection other(port, 0, "127.0.0.2");
+    for (int i = 0; i < 30; ++i) {
+        ASSERT_TRUE(other.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
+        EXPECT_EQ(other.read().value().body, "ok") << "the crowd displaces its own";
+        crowd.push_back(std::make_unique<RawConnection>(port));
+    }
+    EXPECT_TRUE(comes_to_pass([](const auto& load) { return load.connections == 20; }));
+}
+
+TEST_F(Guarded, BoundsWhatWaitingConnectionsHoldInAll)
+{
+    GuardOptions options;
+    options.parking.held_bytes = 400000;
+    options.stream.head = options.stream.idle_body = std::chrono::hours(1);
+    restart(options);
+    RawConnection other(port, 0, "127.0.0.2");
+    ASSERT_TRUE(other.send("POST /read HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nhe"));
+    std::vector<std::unique_ptr<RawConnection>> crowd;
+    for (int i = 0; i < 40; ++i) {
+        crowd.push_back(std::make_unique<RawConnection>(port));
+        ASSERT_TRUE(crowd.back()->send("GET / HTTP/1.1\r\nHost: a\r\nX: " + std::string(30000, 'a')));
+    }
+    EXPECT_TRUE(comes_to_pass([](const auto& load) { return load.connections <= 14; }));
+    ASSERT_TRUE(other.send("llo"));
+    EXPECT_EQ(other.read().value().body, "hello") << "who holds little stays";
 }
 
 TEST_F(Guarded, EndsTheWaitOfAClientThatHangsUp)
@@ -396,8 +581,7 @@ TEST_F(Guarded, StopAnswersWhatHasComeAndIsUnderWay)
 {
     GuardOptions options;
     options.drain = std::chrono::minutes(5);
-    TearDown();
-    start(options);
+    restart(options);
     RawConnection connection(port);
     ASSERT_TRUE(connection.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
     ASSERT_TRUE(connection.read_head()); // its body is on the way
@@ -416,8 +600,7 @@ TEST_F(Guarded, StopWaitsForASlowReaderNoLongerThanItsDrain)
     GuardOptions options;
     options.drain = milliseconds(100);
     options.stream.idle_write = std::chrono::hours(1);
-    TearDown();
-    start(options);
+    restart(options);
     RawConnection slow(port, 4096);
     ASSERT_TRUE(slow.send("GET /big HTTP/1.1\r\nHost: a\r\n\r\n"));
     ASSERT_TRUE(slow.read_head());
@@ -433,8 +616,7 @@ TEST_F(Guarded, SaysWhenItCannotListenAnyMore)
     std::promise<void> told;
     GuardOptions options;
     options.on_deaf = [&told] { told.set_value(); };
-    TearDown();
-    start(options);
+    restart(options);
     EXPECT_TRUE(server_->listening());
     RawConnection connection(port);
     ASSERT_TRUE(connection.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
@@ -450,8 +632,7 @@ TEST_F(Guarded, SaysNothingOfDeafnessWhenItIsStopped)
     bool told = false;
     GuardOptions options;
     options.on_deaf = [&told] { told = true; };
-    TearDown();
-    start(options);
+    restart(options);
     server_->stop();
     EXPECT_FALSE(told);
     EXPECT_FALSE(server_->listening());
@@ -492,11 +673,9 @@ TEST_F(Guarded, ServesManyConnectionsAtOnce)
 {
     GuardOptions options;
     options.threads = 8;
-    options.queue = 200;
-    TearDown();
-    start(options);
+    restart(options);
     std::vector<std::unique_ptr<RawConnection>> connections;
-    for (int i = 0; i < 100; ++i)
+    for (int i = 0; i < 200; ++i)
         connections.push_back(std::make_unique<RawConnection>(port));
     for (auto& connection : connections)
         ASSERT_TRUE(connection->send("GET / HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"));
