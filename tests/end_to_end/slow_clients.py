@@ -159,7 +159,7 @@ def run(service, port, health, headers, bodies, readers):
     if len(ask(port, "GET", asset)[1]) != ASSET:
         sys.exit("FAILED: the asset did not come back")
     job = {"scene": {"objects": [{"shape": "sphere"}]}, "image": {"width": 8, "height": 8}, "quality": {"samples": 1}}
-    quiet = [ask_all(port, health, job, i) for i in range(30)]
+    quiet = [ask_all(port, health, job, i) for i in range(200)]  # warm, as it is among others
     before, threads_before = resident(service), threads(service)
 
     crowd = Crowd(port, headers, bodies, readers, asset.encode())

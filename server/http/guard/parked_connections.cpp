@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <new>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <system_error>
@@ -112,8 +113,12 @@ void ParkedConnections::run()
             const std::lock_guard lock(mutex_);
             arrived.swap(arrivals_);
         }
-        for (Connection& connection : arrived)
-            admit(std::move(connection));
+        for (Connection& connection : arrived) {
+            try {
+                admit(std::move(connection));
+            } catch (const std::bad_alloc&) { // this one closes; the next may find some
+            }
+        }
         expire();
         bound_bytes();
         if (draining_ && !std::exchange(drained_, true)) {
@@ -166,12 +171,16 @@ void ParkedConnections::admit(Connection connection)
     epoll_event event{events_of(*connection), {.fd = fd}};
     if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0)
         return callbacks_.give_up(std::move(connection), Why::displaced); // no memory for it
-    Place place;
-    place.due = due_.emplace(connection->deadline(), fd);
-    place.age = by_age_.insert(by_age_.end(), fd);
+    // What can fail for want of memory comes first; then all of it is entered.
+    std::multimap<Clock::time_point, int> due{{connection->deadline(), fd}};
+    std::list<int> age{fd};
+    Place& place = parked_[fd];
+    place.due = due_.insert(due.extract(due.begin()));
+    place.age = age.begin();
+    by_age_.splice(by_age_.end(), age);
     place.connection = std::move(connection);
     ++count_;
-    settle(parked_.emplace(fd, std::move(place)).first->second);
+    settle(place);
 }
 
 // Its deadline and its bytes, as they are now.
@@ -190,7 +199,12 @@ void ParkedConnections::step(int fd)
     const auto found = parked_.find(fd);
     if (found == parked_.end()) return;
     ConnectionStream& stream = *found->second.connection;
-    if (keeps_waiting(stream)) return settle(found->second);
+    try {
+        if (keeps_waiting(stream)) return settle(found->second);
+    } catch (const std::bad_alloc&) {
+        take_out(fd);
+        return;
+    }
     Connection connection = take_out(fd);
     if (stream.phase() == Phase::answer || (stream.phase() == Phase::request && has_come(stream)))
         callbacks_.go_on(std::move(connection));

@@ -5,6 +5,7 @@
 //          the connection of that client (of the client that has most) which has waited longest makes room, so
 //          that newcomers get in and a crowd from a few addresses displaces itself. If all of a client's are
 //          at work, the newcomer goes.
+// Errors   where there is no memory for one, it closes.
 // Threads  park() and drain() from any; the callbacks come from its own thread, one at a time, and must not
 //          block. They may park.
 #pragma once

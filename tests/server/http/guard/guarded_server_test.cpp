@@ -471,7 +471,7 @@ TEST_F(Guarded, HoldsNoThreadForConnectionsThatWait)
         EXPECT_EQ(crowd.senders[i + 4]->read().value().body, "abcde");
     }
     for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_EQ(crowd.readers[i]->read_bytes(kBig), kBig);
+        EXPECT_EQ(crowd.readers[i]->read_bytes(2 << 20), std::size_t{2} << 20);
 }
 
 TEST_F(Guarded, DropsWhateverIsSlowAtItsDeadline)
