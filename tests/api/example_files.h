@@ -2,6 +2,7 @@
 #pragma once
 
 #include "api/job_request.h"
+#include "tests/support/places.h"
 
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,7 @@ namespace test_api {
 
 inline std::filesystem::path source_folder()
 {
-    return HELIOGRAPH_SOURCE_DIR;
+    return tests::source_dir();
 }
 
 inline std::string text_of_file(const std::filesystem::path& path)

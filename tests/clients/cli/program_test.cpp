@@ -1,4 +1,5 @@
 // The program heliograph as a user runs it, without a service; with one: tests/end_to_end.
+#include "tests/support/places.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temp_folder.h"
 
@@ -16,13 +17,13 @@ using tests::bytes_of;
 using tests::ProgramRun;
 using tests::TempFolder;
 
-const std::string kAssets = HELIOGRAPH_ASSET_DIR;
+const std::string kAssets = tests::asset_dir();
 
 ProgramRun heliograph(std::vector<std::string> words,
                       const std::string& input = {},
                       std::vector<std::string> environment = {})
 {
-    words.insert(words.begin(), HELIOGRAPH_BIN_DIR "/heliograph");
+    words.insert(words.begin(), tests::bin_dir() + "/heliograph");
     environment.emplace_back("HELIOGRAPH_URL=http://127.0.0.1:9"); // the discard port: nobody answers
     return tests::run_program(words, input, environment);
 }

@@ -1,5 +1,6 @@
 #include "renderer/geometry/validate_mesh.h"
 #include "renderer/io/import_mesh.h"
+#include "tests/support/places.h"
 #include "tests/support/temp_folder.h"
 
 #include <gmock/gmock.h>
@@ -55,7 +56,7 @@ ImportedMesh imported(const std::string& name, const std::string& text, const Fi
 
 std::string asset(const std::string& name)
 {
-    return tests::bytes_of(std::filesystem::path(HELIOGRAPH_ASSET_DIR) / name);
+    return tests::bytes_of(std::filesystem::path(tests::asset_dir()) / name);
 }
 
 TEST(ImportMesh, ReadsTheSameKnotFromEveryFormat)
@@ -214,7 +215,7 @@ struct RealMesh {
 
 TEST(ImportMesh, ReadsRealMeshesWithTheirTrueCountsAndBounds)
 {
-    const std::filesystem::path folder = std::filesystem::path(HELIOGRAPH_SOURCE_DIR) / "../shared/assets";
+    const std::filesystem::path folder = std::filesystem::path(tests::source_dir()) / "../shared/assets";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the real meshes are not here";
     const RealMesh meshes[]{
         {"bunny.obj", 69451, 34834, {{-0.09469f, 0.032987f, -0.061874f}, {0.061009f, 0.187321f, 0.0588f}}},
@@ -246,7 +247,7 @@ TEST(ImportMesh, ReadsRealMeshesWithTheirTrueCountsAndBounds)
 TEST(ImportMesh, RefusesTheKnownBombsQuicklyAndClearly)
 {
     const std::filesystem::path folder =
-        std::filesystem::path(HELIOGRAPH_SOURCE_DIR) / "../shared/kit/prototypes/hostile";
+        std::filesystem::path(tests::source_dir()) / "../shared/kit/prototypes/hostile";
     if (!std::filesystem::exists(folder))
         GTEST_SKIP() << "the hostile files are not here; broken/ has our own";
     for (const auto& [name, code] : std::map<std::string, std::string>{{"dag.gltf", "malformed"},

@@ -1,6 +1,7 @@
 // Our own readers against assimp's: the same triangles in the same order, where assimp is known to read
 // right.
 #include "renderer/io/import_mesh.h"
+#include "tests/support/places.h"
 #include "tests/support/temp_folder.h"
 
 #include <assimp/Importer.hpp>
@@ -56,12 +57,12 @@ TEST(MeshReaders, AgreeWithAssimpOnOurAssets)
                              "sphere.obj",
                              "sphere.ply",
                              "terrain.ply"})
-        expect_as_assimp(fs::path(HELIOGRAPH_ASSET_DIR) / name);
+        expect_as_assimp(fs::path(tests::asset_dir()) / name);
 }
 
 TEST(MeshReaders, AgreeWithAssimpOnRealMeshes)
 {
-    const fs::path folder = fs::path(HELIOGRAPH_SOURCE_DIR) / "../shared/assets";
+    const fs::path folder = fs::path(tests::source_dir()) / "../shared/assets";
     if (!fs::exists(folder)) GTEST_SKIP() << "the real meshes are not here";
     for (const char* name : {"bunny.obj", "nefertiti.obj", "ogre.obj", "sponza.obj", "museum.ply"})
         expect_as_assimp(folder / name);

@@ -2,6 +2,7 @@
 #include "renderer/io/gltf_outline.h"
 #include "renderer/io/gltf_tree.h"
 #include "renderer/io/import_mesh.h"
+#include "tests/support/places.h"
 #include "tests/support/temp_folder.h"
 
 #include <gmock/gmock.h>
@@ -48,8 +49,7 @@ triangle_gltf(const std::string& node, const std::string& primitive = "", const 
 
 TEST(ReadGltf, PlacesEveryNodeWithinItsParentAndKeepsSubtreesTogether)
 {
-    const auto result =
-        import_text("parts.glb", tests::bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/parts.glb"));
+    const auto result = import_text("parts.glb", tests::bytes_of(tests::asset_dir() + "/parts.glb"));
     ASSERT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
     const renderer::Mesh& mesh = std::get<ImportedMesh>(result).mesh;
     std::vector<std::string> names;
@@ -82,8 +82,7 @@ TEST(ReadGltf, PlacesEveryNodeWithinItsParentAndKeepsSubtreesTogether)
 
 TEST(ReadGltf, TakesBaseColoursAsDiffuse)
 {
-    const auto result =
-        import_text("parts.glb", tests::bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/parts.glb"));
+    const auto result = import_text("parts.glb", tests::bytes_of(tests::asset_dir() + "/parts.glb"));
     ASSERT_TRUE(std::holds_alternative<ImportedMesh>(result));
     const renderer::Mesh& mesh = std::get<ImportedMesh>(result).mesh;
     ASSERT_GE(mesh.materials.size(), 2u);

@@ -1,6 +1,7 @@
 // Direct light against the converged picture of Cycles, with which POV-Ray agrees to 0.00047 RMSE.
 #include "renderer/io/import_mesh.h"
 #include "tests/support/picture_error.h"
+#include "tests/support/places.h"
 #include "tests/support/render_scene.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@ using namespace renderer;
 
 namespace {
 
-const std::string kShared = HELIOGRAPH_SOURCE_DIR "/../shared/";
+const std::string kShared = tests::source_dir() + "/../shared/";
 
 std::optional<Mesh> import_file(const std::string& path)
 {

@@ -1,5 +1,6 @@
 // heliographd as its user runs it: starts, serves, is killed, comes back, stops in order.
 #include "server/store/blob_store.h"
+#include "tests/support/places.h"
 #include "tests/support/raw_http.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temp_folder.h"
@@ -24,7 +25,7 @@ using test_support::fetch;
 using test_support::HttpAnswer;
 using Json = nlohmann::json;
 
-const std::string kProgram = HELIOGRAPH_BIN_DIR "/heliographd";
+const std::string kProgram = tests::bin_dir() + "/heliographd";
 
 // One process of the service, killed with this object if it still runs.
 class Service {

@@ -1,5 +1,6 @@
 #include "server/store/blob_reader.h"
 #include "tests/server/http/live_service.h"
+#include "tests/support/places.h"
 
 #include <gtest/gtest.h>
 
@@ -256,13 +257,13 @@ TEST(Assets, NeedALength)
 TEST(Assets, InfoTellsWhatAMeshHoldsAndWhyAnotherDoesNotImport)
 {
     const LiveService service;
-    const std::string knot = bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/knot.ply");
+    const std::string knot = bytes_of(tests::asset_dir() + "/knot.ply");
     service.post("/v1/assets", knot);
     const auto info = service.get(path_of(knot) + "/info");
     ASSERT_EQ(info.status, 200) << info.body;
     EXPECT_NE(info.body.find("6144"), std::string::npos) << info.body;
 
-    const std::string broken = bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/broken/truncated.ply");
+    const std::string broken = bytes_of(tests::asset_dir() + "/broken/truncated.ply");
     service.post("/v1/assets", broken);
     const auto fault = service.get(path_of(broken) + "/info");
     EXPECT_EQ(fault.status, 200);

@@ -1,6 +1,7 @@
 #include "server/http/http_server.h"
 #include "tests/server/http/live_service.h"
 #include "tests/server/jobs/faulty_store.h"
+#include "tests/support/places.h"
 
 #include <gtest/gtest.h>
 
@@ -233,7 +234,7 @@ TEST(HttpServer, IsNotReadyWhileTheDiskIsFull)
 {
     tests::DiskFaults disk;
     const LiveService service({},
-                              HELIOGRAPH_BIN_DIR "/heliograph-import",
+                              tests::bin_dir() + "/heliograph-import",
                               std::make_unique<tests::FaultyStore>(server::make_mem_store(), disk));
     const std::vector<int> ports{service.http.port(), service.http.health_port()};
     disk.full = true;

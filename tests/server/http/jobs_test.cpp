@@ -1,4 +1,5 @@
 #include "tests/server/http/live_service.h"
+#include "tests/support/places.h"
 
 #include <gtest/gtest.h>
 
@@ -161,7 +162,7 @@ TEST(Jobs, OfOtherTypesAreRefusedWithTheCurlLineThatWorks)
 TEST(Jobs, AsAFormBringTheirFilesAlong)
 {
     const LiveService service;
-    const std::string knot = bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/knot.obj");
+    const std::string knot = bytes_of(tests::asset_dir() + "/knot.obj");
     for (const bool scene_first : {true, false}) {
         std::vector<std::pair<std::string, std::string>> parts{{"scene", mesh_job("my knot.obj")},
                                                                {"my knot.obj", knot}};
@@ -208,8 +209,7 @@ TEST(Jobs, ThatFailByTheirOwnFaultAnswerTheWaitingClientWithIt)
 {
     const LiveService service;
     const auto [type, body] = test_support::form(
-        {{"scene", mesh_job("m.ply")},
-         {"m.ply", bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/broken/truncated.ply")}});
+        {{"scene", mesh_job("m.ply")}, {"m.ply", bytes_of(tests::asset_dir() + "/broken/truncated.ply")}});
     const auto fault = service.post("/v1/jobs", body, {{"Content-Type", type}, {"Prefer", "wait=60"}});
     EXPECT_EQ(fault.status, 422) << fault.body;
     EXPECT_EQ(json_of(fault).at("errors").at(0).at("pointer"), "/scene/objects/0/mesh");

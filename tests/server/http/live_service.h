@@ -9,6 +9,7 @@
 #include "server/store/blob_store.h"
 #include "server/store/mem_store.h"
 #include "tests/support/json_schema.h"
+#include "tests/support/places.h"
 #include "tests/support/raw_http.h"
 #include "tests/support/temp_folder.h"
 
@@ -28,7 +29,7 @@ using test_support::RawConnection;
 class LiveService {
 public:
     explicit LiveService(const renderer::Limits& limits = {},
-                         const std::string& importer = HELIOGRAPH_BIN_DIR "/heliograph-import",
+                         const std::string& importer = tests::bin_dir() + "/heliograph-import",
                          std::unique_ptr<server::Store> jobs_kept = server::make_mem_store())
         : store(std::move(jobs_kept)), blobs(folder.path() / "blobs"), imports(importer, blobs, limits, log),
           jobs(*store, blobs, imports, {limits, 1, log}),

@@ -1,6 +1,7 @@
 // openapi.json and the server are held against each other: the same routes, and every answer of a walk over
 // all of them has a status, headers, type and shape that the document knows.
 #include "tests/server/http/live_service.h"
+#include "tests/support/places.h"
 
 #include <gtest/gtest.h>
 
@@ -36,11 +37,9 @@ protected:
     {
         document = json::parse(service.get("/v1/openapi.json").body);
         schemas.add("openapi.json", document);
-        digest =
-            tests::json_of(
-                service.post("/v1/assets", tests::bytes_of(std::string(HELIOGRAPH_ASSET_DIR) + "/knot.ply")))
-                .at("digest")
-                .get<std::string>();
+        digest = tests::json_of(service.post("/v1/assets", tests::bytes_of(tests::asset_dir() + "/knot.ply")))
+                     .at("digest")
+                     .get<std::string>();
         done = service.finish(tests::quick_job());
     }
 

@@ -1,4 +1,5 @@
 #include "server/import/import_service.h"
+#include "tests/support/places.h"
 #include "tests/support/temp_folder.h"
 
 #include <gmock/gmock.h>
@@ -36,7 +37,7 @@ protected:
     BlobStore blobs_{folder_.path() / "blobs"};
     renderer::Limits limits_;
     server::Log log_{server::LogLevel::error};
-    fs::path program_ = fs::path(HELIOGRAPH_BIN_DIR) / "heliograph-import";
+    fs::path program_ = fs::path(tests::bin_dir()) / "heliograph-import";
     server::ImportService imports_{program_, blobs_, limits_, log_};
     renderer::ThreadPool pool_{2};
 };
@@ -194,7 +195,7 @@ TEST_F(ImportServiceTest, HasNoInfoOfAMeshWhoseImportWasStopped)
 
 TEST_F(ImportServiceTest, TellsWhatIsInAMesh)
 {
-    const std::string knot = tests::bytes_of(fs::path(HELIOGRAPH_ASSET_DIR) / "knot.glb");
+    const std::string knot = tests::bytes_of(fs::path(tests::asset_dir()) / "knot.glb");
     const std::string digest = put(knot);
     const auto info = imports_.info(digest, {});
     ASSERT_TRUE(info);

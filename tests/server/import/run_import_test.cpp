@@ -1,4 +1,5 @@
 #include "server/import/run_import.h"
+#include "tests/support/places.h"
 #include "tests/support/temp_folder.h"
 
 #include <gmock/gmock.h>
@@ -21,7 +22,7 @@ using server::ImportedAsset;
 using server::ImportFailure;
 using server::OwnedFd;
 
-const fs::path kImporter = fs::path(HELIOGRAPH_BIN_DIR) / "heliograph-import";
+const fs::path kImporter = fs::path(tests::bin_dir()) / "heliograph-import";
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 class RunImport : public testing::Test {
@@ -85,8 +86,8 @@ TEST_F(RunImport, ReadsTheSameKnotFromEveryFormat)
 {
     for (const std::string name :
          {"knot.obj", "knot.ply", "knot_ascii.ply", "knot.stl", "knot_ascii.stl", "knot.glb", "knot.gltf"}) {
-        companions_["knot.bin"] = tests::bytes_of(fs::path(HELIOGRAPH_ASSET_DIR) / "knot.bin");
-        const auto end = run(tests::bytes_of(fs::path(HELIOGRAPH_ASSET_DIR) / name));
+        companions_["knot.bin"] = tests::bytes_of(fs::path(tests::asset_dir()) / "knot.bin");
+        const auto end = run(tests::bytes_of(fs::path(tests::asset_dir()) / name));
         ASSERT_EQ(code(end), "ok") << name;
         EXPECT_EQ(std::get<ImportedAsset>(*end.outcome).mesh.triangles.size(), 6144u) << name;
     }
@@ -94,7 +95,7 @@ TEST_F(RunImport, ReadsTheSameKnotFromEveryFormat)
 
 TEST_F(RunImport, TellsWhyForEveryBrokenFile)
 {
-    const fs::path broken = fs::path(HELIOGRAPH_ASSET_DIR) / "broken";
+    const fs::path broken = fs::path(tests::asset_dir()) / "broken";
     std::istringstream manifest(tests::bytes_of(broken / "manifest.tsv"));
     int files = 0;
     for (std::string line; std::getline(manifest, line); ++files) {
@@ -117,7 +118,7 @@ TEST_F(RunImport, AsksForNoFileOutsideTheJob)
     EXPECT_TRUE(std::get<ImportedAsset>(*end.outcome).mesh.materials.empty());
     EXPECT_THAT(asked_, testing::IsEmpty());
     for (const char* name : {"uri_passwd.gltf", "uri_absolute.gltf", "uri_http.gltf"}) {
-        const auto refused = run(tests::bytes_of(fs::path(HELIOGRAPH_ASSET_DIR) / "broken" / name), ".gltf");
+        const auto refused = run(tests::bytes_of(fs::path(tests::asset_dir()) / "broken" / name), ".gltf");
         EXPECT_EQ(code(refused), "missing_file") << name;
     }
     EXPECT_THAT(asked_, testing::IsEmpty());

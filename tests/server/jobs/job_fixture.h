@@ -7,6 +7,7 @@
 #include "server/store/blob_store.h"
 #include "server/store/mem_store.h"
 #include "server/store/sqlite_store.h"
+#include "tests/support/places.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ public:
          const renderer::Limits& limits)
         : store(std::move(opened)), blobs(folder / "blobs"),
           imports(
-              HELIOGRAPH_BIN_DIR "/heliograph-import", blobs, limits, server::Log(server::LogLevel::error)),
+              tests::bin_dir() + "/heliograph-import", blobs, limits, server::Log(server::LogLevel::error)),
           jobs(*store,
                blobs,
                imports,
