@@ -74,6 +74,11 @@ std::optional<JobState> job_state_from_name(const std::string& name)
     return std::nullopt;
 }
 
+std::vector<std::string> job_state_names()
+{
+    return {kStateNames.begin(), kStateNames.end()};
+}
+
 std::string write_job_view(const JobView& view)
 {
     return text_of(job_json(view));

@@ -27,6 +27,7 @@ enum class JobState : std::uint8_t {
 bool is_final(JobState state);
 const char* name_of(JobState state);
 std::optional<JobState> job_state_from_name(const std::string& name);
+std::vector<std::string> job_state_names();
 
 struct JobView {
     std::string id;
@@ -53,10 +54,13 @@ std::string write_job_list(const std::vector<JobView>& views, const std::string&
 std::string write_report(const renderer::RenderReport& report,
                          const std::string& job_id,
                          const std::string& render_key,
-                         const renderer::QualitySettings& requested);
+                         const renderer::QualitySettings& requested,
+                         bool pretty = true);
 // A report as another job's, which shares the render: the same but for its name. Throws std::invalid_argument
 // if it is none.
 std::string readdress_report(const std::string& report, const std::string& job_id);
+// JSON text as people read it, a member a line; other text as it is.
+std::string indented(const std::string& json);
 
 // Asset answers.
 struct AssetInfo {

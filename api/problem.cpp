@@ -20,37 +20,46 @@ struct Title {
 };
 
 constexpr std::array kTitles{
-    Title{"asset_in_use", "Asset is in use"},
+    Title{"asset_damaged", "Asset is damaged"},
     Title{"bad_request", "Request cannot be read"},
-    Title{"canceled", "Job was canceled"},
     Title{"digest_mismatch", "Bytes do not match their digest"},
     Title{"draining", "Service is shutting down"},
+    Title{"duplicate_name", "Two files have one name"},
+    Title{"empty_body", "Body is empty"},
+    Title{"expectation_failed", "Expectation cannot be met"},
     Title{"expired", "Result is no longer kept"},
+    Title{"headers_too_large", "Headers are too large"},
+    Title{"http_version", "HTTP version is not spoken"},
     Title{"idempotency_key_reuse", "Idempotency key belongs to another request"},
-    Title{"internal_error", "Service failed"},
-    Title{"invalid_mesh", "Mesh cannot be used"},
+    Title{"internal", "Service failed"},
+    Title{"invalid_digest", "Digest is not valid"},
+    Title{"invalid_name", "File's name is not valid"},
     Title{"invalid_query", "Query is not valid"},
     Title{"invalid_scene", "Scene is not valid"},
     Title{"length_required", "Length is missing"},
     Title{"malformed_json", "Body is not valid JSON"},
     Title{"method_not_allowed", "Method is not allowed here"},
+    Title{"missing_scene", "Scene is missing"},
     Title{"non_finite", "Picture has samples that are not finite"},
     Title{"not_acceptable", "No such representation"},
     Title{"not_found", "Not found"},
+    Title{"out_of_memory", "Out of memory"},
     Title{"over_limit", "Over a limit"},
     Title{"queue_full", "Queue is full"},
     Title{"range_not_satisfiable", "Range lies outside"},
-    Title{"rate_limited", "Too many requests"},
     Title{"render_failed", "Render failed"},
-    Title{"starting", "Service is starting"},
+    Title{"request_timeout", "Request came too slowly"},
+    Title{"result_damaged", "Result is damaged"},
     Title{"still_ending", "Job is still ending"},
     Title{"still_running", "Render is not finished"},
     Title{"storage_full", "Storage is full"},
-    Title{"target_missed", "Accuracy target was missed"},
+    Title{"target_too_long", "Path is too long"},
     Title{"time_limit", "Time limit reached"},
+    Title{"too_many_attempts", "Tried too often"},
     Title{"too_many_bodies", "Too many bodies at the same time"},
+    Title{"too_many_parts", "Too many files"},
     Title{"too_many_waiters", "Too many waiting requests"},
-    Title{"unsupported", "Not available in this build"},
+    Title{"unsupported_encoding", "Content encoding is not supported"},
     Title{"unsupported_media_type", "Content type is not supported"},
 };
 
@@ -80,6 +89,12 @@ bool read_fault(const Json& json, Problem& out)
 }
 
 } // namespace
+
+bool has_title(std::string_view code)
+{
+    return std::any_of(
+        kTitles.begin(), kTitles.end(), [&](const Title& entry) { return entry.code == code; });
+}
 
 Json fault_json(const Problem& fault)
 {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace api {
@@ -30,6 +31,9 @@ std::string write_problem(const ProblemDetails& problem);
 // Reads back what write_problem wrote (the store keeps job errors as text; the CLI shows them).
 // Nothing if it is not one.
 bool read_problem(const std::string& text, ProblemDetails& out);
+
+// Whether the table of codes has it.
+bool has_title(std::string_view code);
 
 // From faults to the answer: status, code and a summary ("2 faults; first: ...").
 ProblemDetails problem_from_faults(int status, std::string code, std::vector<Problem> errors);

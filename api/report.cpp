@@ -51,7 +51,8 @@ Json accuracy_json(const renderer::AccuracyReport& accuracy, const renderer::Qua
 std::string write_report(const renderer::RenderReport& report,
                          const std::string& job_id,
                          const std::string& render_key,
-                         const renderer::QualitySettings& requested)
+                         const renderer::QualitySettings& requested,
+                         bool pretty)
 {
     const renderer::NumericsReport& numerics = report.numerics;
     const renderer::TimingReport& timing = report.timing;
@@ -77,7 +78,13 @@ std::string write_report(const renderer::RenderReport& report,
           {"instances", geometry.instances},
           {"bvh_bytes", geometry.bvh_bytes}}},
         {"notes", report.notes}};
-    return text_of(json, true);
+    return text_of(json, pretty);
+}
+
+std::string indented(const std::string& text)
+{
+    const Json json = Json::parse(text, nullptr, false);
+    return json.is_discarded() ? text : text_of(json, true);
 }
 
 std::string readdress_report(const std::string& report, const std::string& job_id)

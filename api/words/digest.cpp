@@ -23,4 +23,11 @@ bool is_digest(std::string_view text)
            });
 }
 
+std::string damaged_asset_words(std::string_view digest)
+{
+    const std::string name(digest);
+    return name + " was damaged on the service's disk: PUT /v1/assets/" + name +
+           " with the same bytes mends it, then try again";
+}
+
 } // namespace api

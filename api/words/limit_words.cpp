@@ -44,16 +44,26 @@ std::uint64_t value_of(std::string_view limit, const renderer::Limits& limits)
     return entry ? limits.*entry->value : 0;
 }
 
+namespace {
+
+std::string with_unit(std::uint64_t value, std::string_view limit)
+{
+    const renderer::LimitEntry* entry = find_limit(limit);
+    return std::to_string(value) + (entry && *entry->unit ? std::string(" ") + entry->unit : std::string());
+}
+
+} // namespace
+
+std::string over_limit_words(std::string_view what, std::string_view limit, const renderer::Limits& limits)
+{
+    return std::string(what) + " is over the limit " + std::string(limit) + ", " +
+           with_unit(value_of(limit, limits), limit) + "; " + raise_words(limit);
+}
+
 Problem
 over_limit(std::string pointer, std::string_view limit, std::uint64_t asked, const renderer::Limits& limits)
 {
-    const renderer::LimitEntry* entry = find_limit(limit);
-    assert(entry);
-    const std::string unit = entry && *entry->unit ? std::string(" ") + entry->unit : std::string();
-    return {std::move(pointer),
-            "over_limit",
-            std::to_string(asked) + unit + " is over the limit " + std::string(limit) + ", " +
-                std::to_string(value_of(limit, limits)) + unit + "; " + raise_words(limit)};
+    return {std::move(pointer), "over_limit", over_limit_words(with_unit(asked, limit), limit, limits)};
 }
 
 } // namespace api

@@ -1,6 +1,7 @@
 #include "clients/cli/command_line.h"
 
 #include "api/build_info.h"
+#include "api/job_view.h"
 #include "clients/cli/interrupt.h"
 #include "clients/cli/local_commands.h"
 #include "clients/cli/remote_commands.h"
@@ -207,8 +208,8 @@ void add_looking(CommandLine& words)
     CLI::App* list = add_command(words, "list", "list jobs, newest first", [&words](const auto& stop) {
         return list_command(words.service, words.list, stop);
     });
-    list->add_option("--state", words.list.state, "only jobs in this state; running: all that a worker has")
-        ->check(CLI::IsMember({"queued", "running", "succeeded", "failed", "canceled", "expired"}));
+    list->add_option("--state", words.list.state, "only jobs in this state, as the service names it")
+        ->check(CLI::IsMember(api::job_state_names()));
     list->add_option("--label", words.list.label, "only jobs with this NAME=VALUE");
     list->add_option("--limit", words.list.limit, "at most so many; 0: all")->capture_default_str();
     list->add_flag("--json", words.list.json, "the pages as the service sends them");

@@ -31,6 +31,11 @@ std::span<const LimitEntry> limit_table()
         LimitEntry{"asset_bytes", &Limits::asset_bytes, "bytes", "largest asset", kMostBytes},
         LimitEntry{
             "total_asset_bytes", &Limits::total_asset_bytes, "bytes", "all assets together", kMostBytes},
+        LimitEntry{"total_result_bytes",
+                   &Limits::total_result_bytes,
+                   "bytes",
+                   "all jobs together, their pictures, scenes and reports",
+                   kMostBytes},
         LimitEntry{
             "image_side_px", &Limits::image_side_px, "pixels", "longest side of a picture", 1ull << 20},
         LimitEntry{"image_pixels", &Limits::image_pixels, "pixels", "largest picture", 1ull << 32},

@@ -13,6 +13,7 @@ struct Limits {
     std::uint64_t json_values = 200'000;
     std::uint64_t asset_bytes = 256ull << 20;
     std::uint64_t total_asset_bytes = 20ull << 30;
+    std::uint64_t total_result_bytes = 10ull << 30;
     std::uint64_t image_side_px = 8192;
     std::uint64_t image_pixels = 33'000'000;
     std::uint64_t samples = 65536;

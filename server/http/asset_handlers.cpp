@@ -63,13 +63,12 @@ void AssetHandlers::store_body(Exchange& exchange, const std::string& announced)
                 415,
                 "unsupported_media_type",
                 "an asset's body is its bytes and nothing else: curl -T FILE, or curl --data-binary @FILE"));
-    if (auto refusal = refuse_by_head(exchange, "the asset", &renderer::Limits::asset_bytes, limits_))
+    if (auto refusal = refuse_by_head(exchange, "the asset", "asset_bytes", limits_))
         return reply_problem(exchange, *std::move(refusal));
     AssetIntake intake(store_, blobs_, limits_);
     auto failure = read_body(exchange, [&](std::string_view bytes) { return intake.append(bytes); });
     if (failure) return reply_problem(exchange, *std::move(failure));
-    if (intake.over_limit())
-        return reply_problem(exchange, over_limit("the asset", &renderer::Limits::asset_bytes, limits_));
+    if (intake.over_limit()) return reply_problem(exchange, over_limit("the asset", "asset_bytes", limits_));
     if (announced.empty() && intake.bytes() == 0)
         return reply_problem(
             exchange, problem(422, "empty_body", "the body is empty: curl --data-binary @FILE sends a file"));

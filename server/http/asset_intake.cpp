@@ -7,8 +7,8 @@
 
 namespace server {
 
-AssetIntake::AssetIntake(Store& store, BlobStore& blobs, const renderer::Limits& limits)
-    : store_(store), blobs_(blobs), limits_(limits), writer_(blobs.write(BlobStore::Kind::asset))
+AssetIntake::AssetIntake(Store& store, BlobStore& blobs, const renderer::Limits& limits, bool durable)
+    : store_(store), blobs_(blobs), limits_(limits), writer_(blobs.write(BlobStore::Kind::asset, durable))
 {
 }
 
@@ -29,16 +29,14 @@ std::variant<StoredAsset, api::ProblemDetails> AssetIntake::commit(const std::st
                        "the path names " + announced + ", but the " + std::to_string(bytes) +
                            " bytes that came have " + digest);
     if (!blobs_.has(BlobStore::Kind::asset, digest) &&
-        !blobs_.make_room(bytes, limits_.total_asset_bytes, store_.referenced_digests()))
+        !blobs_.make_room(bytes, limits_.total_asset_bytes, [&] { return store_.assets_in_use(); }))
         return problem(503,
                        "storage_full",
                        "all assets together would be over the limit total_asset_bytes, " +
                            std::to_string(limits_.total_asset_bytes) +
                            " bytes, and those stored are in use; the service's flag " +
                            api::flag_of("total_asset_bytes") + " raises it");
-    const bool fresh = writer_->commit();
-    blobs_.touch(BlobStore::Kind::asset, digest);
-    return StoredAsset{digest, bytes, fresh};
+    return StoredAsset{digest, bytes, writer_->commit()};
 }
 
 } // namespace server

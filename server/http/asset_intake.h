@@ -24,13 +24,14 @@ struct StoredAsset {
 
 class AssetIntake {
 public:
-    AssetIntake(Store& store, BlobStore& blobs, const renderer::Limits& limits);
+    // `durable` false: the caller makes it so, for many together.
+    AssetIntake(Store& store, BlobStore& blobs, const renderer::Limits& limits, bool durable = true);
 
     // False when it is over limits.asset_bytes.
     bool append(std::string_view bytes);
     bool over_limit() const { return over_limit_; }
     std::uint64_t bytes() const { return writer_->bytes(); }
-    // Durable when it returns. `announced` empty: any digest is right. 422 digest_mismatch, 503 storage_full.
+    // `announced` empty: any digest is right. 422 digest_mismatch, 503 storage_full.
     std::variant<StoredAsset, api::ProblemDetails> commit(const std::string& announced = {});
 
 private:

@@ -2,22 +2,13 @@
 
 #include "api/words/limit_words.h"
 
-#include <algorithm>
 #include <charconv>
 
 namespace server {
 
-api::ProblemDetails
-over_limit(const std::string& what, std::uint64_t renderer::Limits::*limit, const renderer::Limits& limits)
+api::ProblemDetails over_limit(std::string_view what, std::string_view limit, const renderer::Limits& limits)
 {
-    const auto& entry = *std::find_if(renderer::limit_table().begin(),
-                                      renderer::limit_table().end(),
-                                      [&](const auto& row) { return row.value == limit; });
-    const std::string unit = *entry.unit != '\0' ? std::string(" ") + entry.unit : std::string();
-    return problem(413,
-                   "too_large",
-                   what + " is over the limit " + entry.name + ", " + std::to_string(limits.*limit) + unit +
-                       "; the service's flag " + api::flag_of(entry.name) + " raises it");
+    return problem(413, "over_limit", api::over_limit_words(what, limit, limits));
 }
 
 std::optional<api::ProblemDetails> refuse_without_length(const Exchange& exchange, const std::string& what)
@@ -29,14 +20,14 @@ std::optional<api::ProblemDetails> refuse_without_length(const Exchange& exchang
 
 std::optional<api::ProblemDetails> refuse_by_head(const Exchange& exchange,
                                                   const std::string& what,
-                                                  std::uint64_t renderer::Limits::*limit,
+                                                  std::string_view limit,
                                                   const renderer::Limits& limits)
 {
     if (auto refusal = refuse_without_length(exchange, what)) return refusal;
     const std::string text = exchange.header("Content-Length");
     std::uint64_t length = 0;
     std::from_chars(text.data(), text.data() + text.size(), length);
-    if (length > limits.*limit) return over_limit(what, limit, limits);
+    if (length > api::value_of(limit, limits)) return over_limit(what, limit, limits);
     return std::nullopt;
 }
 

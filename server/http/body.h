@@ -14,15 +14,14 @@ namespace server {
 
 // 413 that names the limit, its value and the flag that raises it. `what` begins the sentence: "the JSON
 // body".
-api::ProblemDetails
-over_limit(const std::string& what, std::uint64_t renderer::Limits::*limit, const renderer::Limits& limits);
+api::ProblemDetails over_limit(std::string_view what, std::string_view limit, const renderer::Limits& limits);
 
 // 411 where the head tells neither length nor chunks.
 std::optional<api::ProblemDetails> refuse_without_length(const Exchange& exchange, const std::string& what);
 // The same, and 413 when the length is over the limit.
 std::optional<api::ProblemDetails> refuse_by_head(const Exchange& exchange,
                                                   const std::string& what,
-                                                  std::uint64_t renderer::Limits::*limit,
+                                                  std::string_view limit,
                                                   const renderer::Limits& limits);
 
 // Gives the body to `take` piece by piece. 400 when it ends before it is complete; whether `take` stopped it

@@ -144,7 +144,7 @@ void JobHandlers::list(Exchange& exchange)
     auto query = read_list_query(exchange);
     if (auto* faults = std::get_if<std::vector<api::Problem>>(&query))
         return reply_problem(exchange, api::problem_from_faults(422, "invalid_query", std::move(*faults)));
-    auto page = jobs_.list(std::get<ListQuery>(query));
+    auto page = jobs_.list(std::get<ListWords>(query));
     if (auto* refusal = std::get_if<api::ProblemDetails>(&page))
         return reply_problem(exchange, std::move(*refusal));
     reply_json(exchange, 200, std::get<std::string>(page));

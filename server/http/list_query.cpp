@@ -13,32 +13,15 @@ namespace {
 
 constexpr std::uint32_t kMaxPage = 200;
 
-// `running` is every job that a worker has, also while it prepares or is being canceled.
-const std::vector<std::pair<std::string, StoredState>>& states()
+std::optional<api::Problem> read_state(const std::string& text, ListWords& words)
 {
-    static const std::vector<std::pair<std::string, StoredState>> names{{"queued", StoredState::queued},
-                                                                        {"running", StoredState::leased},
-                                                                        {"succeeded", StoredState::succeeded},
-                                                                        {"failed", StoredState::failed},
-                                                                        {"canceled", StoredState::canceled},
-                                                                        {"expired", StoredState::expired}};
-    return names;
-}
-
-std::optional<api::Problem> read_state(const std::string& text, ListQuery& query)
-{
-    std::vector<std::string> known;
-    std::string all;
-    for (const auto& [name, state] : states()) {
-        if (name == text) query.state = state;
-        known.push_back(name);
-        all += (all.empty() ? "" : ", ") + name;
-    }
-    if (query.state) return std::nullopt;
+    words.state = api::job_state_from_name(text);
+    if (words.state) return std::nullopt;
+    const std::vector<std::string> known = api::job_state_names();
     return api::Problem{"",
                         "invalid_parameter",
                         "state \"" + printable(text) + "\" is not known" + api::did_you_mean(text, known) +
-                            " (known: " + all + "; running: also those that prepare or are being canceled)"};
+                            " (known: " + api::listed(known) + ")"};
 }
 
 } // namespace
@@ -48,9 +31,9 @@ std::vector<std::string> list_query_keys()
     return {"state", "label", "limit", "cursor"};
 }
 
-std::variant<ListQuery, std::vector<api::Problem>> read_list_query(const Exchange& exchange)
+std::variant<ListWords, std::vector<api::Problem>> read_list_query(const Exchange& exchange)
 {
-    ListQuery query;
+    ListWords query;
     std::vector<api::Problem> faults;
     if (const auto state = exchange.query("state"))
         if (auto fault = read_state(*state, query)) faults.push_back(*std::move(fault));

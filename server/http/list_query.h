@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/http/exchange.h"
-#include "server/store/store.h"
+#include "server/jobs/job_service.h"
 
 #include <string>
 #include <variant>
@@ -11,6 +11,6 @@
 namespace server {
 
 std::vector<std::string> list_query_keys();
-std::variant<ListQuery, std::vector<api::Problem>> read_list_query(const Exchange& exchange);
+std::variant<ListWords, std::vector<api::Problem>> read_list_query(const Exchange& exchange);
 
 } // namespace server

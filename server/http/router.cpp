@@ -1,8 +1,9 @@
 #include "server/http/router.h"
 
+#include "api/words/digest.h"
 #include "api/words/sentences.h"
 #include "server/http/printable.h"
-#include "server/store/store.h"
+#include "server/store/damaged_blob.h"
 
 #include <algorithm>
 #include <optional>
@@ -121,6 +122,10 @@ void Router::dispatch(Exchange& exchange) const
     static constexpr const char* kPublic = "the service failed; tell its keeper the request id";
     try {
         route(exchange);
+    } catch (const DamagedBlob& damage) {
+        failed(damage.what(),
+               damage.asset ? problem(500, "asset_damaged", api::damaged_asset_words(damage.digest))
+                            : problem(500, "internal", kPublic));
     } catch (const StoreError& error) {
         failed(error.what(),
                error.storage_full

@@ -76,7 +76,7 @@ public:
         if (name == kScenePart)
             scene_.emplace();
         else
-            file_.emplace(store_, blobs_, limits_);
+            file_.emplace(store_, blobs_, limits_, false);
         return true;
     }
 
@@ -87,11 +87,11 @@ public:
         if (files_bytes_ > limits_.asset_bytes || (file_ && !file_->append(bytes)))
             return refuse(
                 over_limit("the files of one form together: PUT /v1/assets/sha256:... takes each alone; this",
-                           &renderer::Limits::asset_bytes,
+                           "asset_bytes",
                            limits_));
         if (file_) return true;
         if (scene_->size() + bytes.size() > limits_.json_bytes)
-            return refuse(over_limit("the part scene", &renderer::Limits::json_bytes, limits_));
+            return refuse(over_limit("the part scene", "json_bytes", limits_));
         *scene_ += bytes;
         return true;
     }
@@ -104,6 +104,14 @@ public:
         if (auto* refusal = std::get_if<api::ProblemDetails>(&stored)) return refuse(std::move(*refusal));
         files_[name_] = std::get<StoredAsset>(stored).digest;
         return true;
+    }
+
+    void make_files_durable()
+    {
+        std::vector<std::string> digests;
+        for (const auto& [name, digest] : files_)
+            digests.push_back(digest);
+        blobs_.make_durable(BlobStore::Kind::asset, digests);
     }
 
     std::optional<api::ProblemDetails>& refusal() { return refusal_; }
@@ -151,6 +159,7 @@ Read read_multipart(Exchange& exchange, FormTaker&& taker)
             "the form has no part named scene: curl -F scene=@scene.json; the other parts are its files");
     SubmitWords words;
     words.body = *std::move(taker.scene());
+    taker.make_files_durable();
     words.part_digests = std::move(taker.files());
     return words;
 }
@@ -165,7 +174,7 @@ Read read_json(Exchange& exchange, BodyKind kind, const renderer::Limits& limits
         return !over;
     });
     if (failure) return *std::move(failure);
-    if (over) return over_limit("the JSON body", &renderer::Limits::json_bytes, limits);
+    if (over) return over_limit("the JSON body", "json_bytes", limits);
     const std::size_t start = words.body.find_first_not_of(" \t\r\n");
     if (start == std::string::npos)
         return problem(400, "empty_body", std::string("the body is empty: ") + kCurlHint);
@@ -204,7 +213,7 @@ Read read_submit_words(Exchange& exchange, Store& store, BlobStore& blobs, const
     // Of a form only the files are counted, as they come.
     if (auto refusal = kind == BodyKind::multipart
                            ? refuse_without_length(exchange, "the form")
-                           : refuse_by_head(exchange, "the JSON body", &renderer::Limits::json_bytes, limits))
+                           : refuse_by_head(exchange, "the JSON body", "json_bytes", limits))
         return *std::move(refusal);
     Read read = kind == BodyKind::multipart ? read_multipart(exchange, FormTaker(store, blobs, limits))
                                             : read_json(exchange, kind, limits);

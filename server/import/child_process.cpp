@@ -33,7 +33,7 @@ public:
         check(::posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0), "addopen");
         check(::posix_spawn_file_actions_addopen(&actions_, 1, "/dev/null", O_WRONLY, 0), "addopen");
         int target = 2;
-        for (const OwnedFd& copy : copies_)
+        for (const FileDescriptor& copy : copies_)
             check(::posix_spawn_file_actions_adddup2(&actions_, copy.get(), target++), "adddup2");
         // Whatever else is open here without O_CLOEXEC, sockets of clients among it, stays here.
         check(::posix_spawn_file_actions_addclosefrom_np(&actions_, target), "addclosefrom");
@@ -45,7 +45,7 @@ public:
 
 private:
     posix_spawn_file_actions_t actions_{};
-    std::vector<OwnedFd> copies_;
+    std::vector<FileDescriptor> copies_;
 };
 
 // No signal blocked or ignored, and a group of its own: a terminal's Ctrl-C is for the service, which
@@ -96,7 +96,7 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
     check(::posix_spawn(
               &pid_, program.c_str(), actions.get(), attributes.get(), argv.data(), environment.data()),
           program.c_str());
-    pidfd_ = OwnedFd(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
+    pidfd_ = FileDescriptor(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
     if (pidfd_) return;
     const int error = errno;
     kill();

@@ -5,7 +5,7 @@
 // Errors   start throws std::system_error if the program cannot be started.
 #pragma once
 
-#include "server/import/owned_fd.h"
+#include "server/store/file_descriptor.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -39,7 +39,7 @@ public:
 
 private:
     pid_t pid_ = -1;
-    OwnedFd pidfd_;
+    FileDescriptor pidfd_;
 };
 
 } // namespace server

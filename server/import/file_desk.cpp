@@ -28,7 +28,7 @@ msghdr message(iovec& word, FdControl* control)
     return header;
 }
 
-bool send_answer(int desk, const OwnedFd& file)
+bool send_answer(int desk, const FileDescriptor& file)
 {
     char word = file ? 'y' : 'n';
     iovec vector{&word, 1};
@@ -47,15 +47,15 @@ bool send_answer(int desk, const OwnedFd& file)
 
 } // namespace
 
-std::pair<OwnedFd, OwnedFd> make_desk()
+std::pair<FileDescriptor, FileDescriptor> make_desk()
 {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
         throw std::system_error(errno, std::generic_category(), "socketpair");
-    return {OwnedFd(ends[0]), OwnedFd(ends[1])};
+    return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
 }
 
-OwnedFd ask_for_file(int desk, std::string_view name)
+FileDescriptor ask_for_file(int desk, std::string_view name)
 {
     if (name.empty() || name.size() > kLongestFileName) return {};
     if (::send(desk, name.data(), name.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(name.size())) return {};
@@ -71,10 +71,10 @@ OwnedFd ask_for_file(int desk, std::string_view name)
     if (!part || part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_RIGHTS) return {};
     int fd = -1;
     std::memcpy(&fd, CMSG_DATA(part), sizeof fd);
-    return OwnedFd(fd);
+    return FileDescriptor(fd);
 }
 
-bool answer_question(int desk, const std::function<OwnedFd(std::string_view)>& open)
+bool answer_question(int desk, const std::function<FileDescriptor(std::string_view)>& open)
 {
     std::array<char, kLongestFileName + 1> name{};
     // Without room for control data, descriptors that the importer might send are discarded by the kernel.
@@ -82,7 +82,7 @@ bool answer_question(int desk, const std::function<OwnedFd(std::string_view)>& o
     if (got < 0) return errno == EAGAIN || errno == EINTR;
     if (got == 0) return false;
     const bool fits = static_cast<std::size_t>(got) <= kLongestFileName;
-    return send_answer(desk, fits ? open({name.data(), static_cast<std::size_t>(got)}) : OwnedFd());
+    return send_answer(desk, fits ? open({name.data(), static_cast<std::size_t>(got)}) : FileDescriptor());
 }
 
 } // namespace server

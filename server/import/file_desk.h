@@ -8,7 +8,7 @@
 //         does not understand the same way, and closes after kMostQuestions.
 #pragma once
 
-#include "server/import/owned_fd.h"
+#include "server/store/file_descriptor.h"
 
 #include <cstddef>
 #include <functional>
@@ -21,13 +21,13 @@ constexpr std::size_t kLongestFileName = 1024;
 constexpr int kMostQuestions = 256;
 
 // A connected pair: .first stays with the service, .second goes to the importer. Throws std::system_error.
-std::pair<OwnedFd, OwnedFd> make_desk();
+std::pair<FileDescriptor, FileDescriptor> make_desk();
 
 // The importer's side: an open descriptor, or none.
-OwnedFd ask_for_file(int desk, std::string_view name);
+FileDescriptor ask_for_file(int desk, std::string_view name);
 
 // The service's side: answers one question if there is one; `open` gives the descriptor or none. False once
 // the other side is gone.
-bool answer_question(int desk, const std::function<OwnedFd(std::string_view name)>& open);
+bool answer_question(int desk, const std::function<FileDescriptor(std::string_view name)>& open);
 
 } // namespace server

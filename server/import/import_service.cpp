@@ -1,5 +1,6 @@
 #include "server/import/import_service.h"
 
+#include "api/words/digest.h"
 #include "server/import/import_cache.h"
 #include "server/import/mesh_figures.h"
 #include "server/import/run_import.h"
@@ -113,30 +114,31 @@ struct ImportService::State {
         return decltype(answer(std::declval<KnownImport&>()))();
     }
 
-    OwnedFd open_asset(const std::string& digest) const
+    FileDescriptor open_asset(const std::string& digest) const
     {
         const int fd = ::open(blobs.path(kAsset, digest).c_str(), O_RDONLY | O_CLOEXEC);
         if (fd < 0 && errno != ENOENT)
             throw std::system_error(errno, std::generic_category(), "open an asset");
-        return OwnedFd(fd);
+        return FileDescriptor(fd);
     }
 
     // A file of the job by the name that the mesh uses; what was answered is part of the cache's key.
-    OwnedFd open_companion(const ImportRequest& request, std::string_view name, NamedDigests& answers)
+    FileDescriptor open_companion(const ImportRequest& request, std::string_view name, NamedDigests& answers)
     {
         const auto file = request.files.find(std::string(name));
         const bool there =
             file != request.files.end() && blobs.read(kAsset, file->second).has_value(); // verified
-        OwnedFd fd = there ? open_asset(file->second) : OwnedFd();
+        FileDescriptor fd = there ? open_asset(file->second) : FileDescriptor();
         answers[std::string(name)] = fd ? file->second : "";
         return fd;
     }
 
+    // A damaged file is the disk's fault, but the client's to mend.
     Imported
     import(const ImportRequest& request, NamedDigests& answers, bool& repeatable, std::stop_token stop)
-    {
+    try {
         repeatable = false;
-        const OwnedFd file = open_asset(request.digest);
+        const FileDescriptor file = open_asset(request.digest);
         if (!file)
             return ImportFailure{"missing_asset",
                                  request.digest + " is not uploaded: PUT /v1/assets/" + request.digest};
@@ -164,6 +166,10 @@ struct ImportService::State {
                    {"detail", failure.detail},
                    {"importer_log", end.log}});
         return std::move(failure);
+    } catch (const DamagedBlob& damage) {
+        log.write(LogLevel::error, "asset_damaged", {{"digest", damage.digest}, {"what", damage.what()}});
+        repeatable = false;
+        return ImportFailure{"asset_damaged", api::damaged_asset_words(damage.digest)};
     }
 
     void remember(KnownImport known)

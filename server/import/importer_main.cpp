@@ -54,7 +54,7 @@ public:
         const auto known = files_.find(name);
         if (known != files_.end()) return known->second;
         std::optional<std::span<const std::byte>> bytes;
-        if (const server::OwnedFd file = server::ask_for_file(kDesk, name))
+        if (const server::FileDescriptor file = server::ask_for_file(kDesk, name))
             bytes = MappedFile(file.get()).bytes();
         files_.emplace(name, bytes);
         return bytes;

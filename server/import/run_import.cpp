@@ -26,10 +26,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostLogBytes = 4096;
 
-OwnedFd checked(int fd, const char* what)
+FileDescriptor checked(int fd, const char* what)
 {
     if (fd < 0) throw std::system_error(errno, std::generic_category(), what);
-    return OwnedFd(fd);
+    return FileDescriptor(fd);
 }
 
 std::vector<std::string> arguments_of(const ImportRun& run)
@@ -83,8 +83,8 @@ public:
         std::array<int, 2> ends{};
         if (::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0)
             throw std::system_error(errno, std::generic_category(), "pipe2");
-        log_read_ = OwnedFd(ends[0]);
-        log_write_ = OwnedFd(ends[1]);
+        log_read_ = FileDescriptor(ends[0]);
+        log_write_ = FileDescriptor(ends[1]);
     }
 
     ImportRunEnd go()
@@ -194,9 +194,9 @@ private:
 
     const ImportRun& run_;
     std::stop_token stop_;
-    OwnedFd stop_event_, output_;
-    std::pair<OwnedFd, OwnedFd> desk_;
-    OwnedFd log_read_, log_write_;
+    FileDescriptor stop_event_, output_;
+    std::pair<FileDescriptor, FileDescriptor> desk_;
+    FileDescriptor log_read_, log_write_;
     ImportRunEnd result_;
 };
 

@@ -6,7 +6,7 @@
 
 #include "renderer/description/limits.h"
 #include "server/import/flat_mesh.h"
-#include "server/import/owned_fd.h"
+#include "server/store/file_descriptor.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -22,7 +22,8 @@ struct ImportRun {
     std::filesystem::path program; // heliograph-import
     int file = -1;                 // open for reading
     std::string extension;         // ".obj" where the name had one: a hint for what the content does not tell
-    std::function<OwnedFd(std::string_view name)> open; // companion files; called on the calling thread
+    std::function<FileDescriptor(std::string_view name)>
+        open; // companion files; called on the calling thread
     renderer::Limits limits;
 };
 

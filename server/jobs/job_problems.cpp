@@ -37,6 +37,16 @@ api::ProblemDetails storage_full_problem()
                    true);
 }
 
+api::ProblemDetails results_full_problem(std::uint64_t limit)
+{
+    return problem(503,
+                   "storage_full",
+                   "all jobs together would be over the limit total_result_bytes, " + std::to_string(limit) +
+                       " bytes, and those stored are not finished; try again later, or " +
+                       api::raise_words("total_result_bytes"),
+                   true);
+}
+
 api::ProblemDetails queue_full_problem(std::uint64_t limit)
 {
     return problem(429,
@@ -124,6 +134,12 @@ api::ProblemDetails picture_lost_problem(const JobId& id, const std::string& ass
                    true);
 }
 
+api::ProblemDetails result_too_large_problem(std::uint64_t bytes, const renderer::Limits& limits)
+{
+    return api::problem_from_faults(
+        422, "over_limit", {api::over_limit("/image", "total_result_bytes", bytes, limits)});
+}
+
 api::ProblemDetails time_limit_problem(double limit_s)
 {
     char seconds[32];
@@ -180,6 +196,13 @@ api::ProblemDetails faults_problem(std::vector<renderer::Fault> faults)
     for (renderer::Fault& fault : faults)
         errors.push_back({std::move(fault.pointer), std::move(fault.code), std::move(fault.detail)});
     return api::problem_from_faults(422, over_limit ? "over_limit" : "invalid_scene", std::move(errors));
+}
+
+JobFailure failure_of(const api::ProblemDetails& problem)
+{
+    api::ProblemDetails summary = problem;
+    summary.errors.clear();
+    return {api::write_problem(summary), api::write_problem(problem)};
 }
 
 void add_faults(const FailedMeshes& failed,

@@ -3,6 +3,7 @@
 
 #include "api/problem.h"
 #include "renderer/description/fault_list.h"
+#include "renderer/description/limits.h"
 #include "renderer/description/scene_description.h"
 #include "server/import/import_service.h"
 #include "server/store/store.h"
@@ -16,6 +17,8 @@ namespace server {
 
 api::ProblemDetails draining_problem();
 api::ProblemDetails storage_full_problem();
+// The limit, not the disk.
+api::ProblemDetails results_full_problem(std::uint64_t limit);
 api::ProblemDetails queue_full_problem(std::uint64_t limit);
 api::ProblemDetails key_reused_problem();
 api::ProblemDetails bad_cursor_problem();
@@ -31,12 +34,16 @@ api::ProblemDetails renders_again_problem(const JobId& id);
 api::ProblemDetails picture_lost_problem(const JobId& id, const std::string& asset);
 
 // How a job fails.
+api::ProblemDetails result_too_large_problem(std::uint64_t bytes, const renderer::Limits& limits);
 api::ProblemDetails time_limit_problem(double limit_s);
 api::ProblemDetails non_finite_problem(std::uint64_t samples);
 api::ProblemDetails too_many_attempts_problem(const JobId& id, std::uint32_t attempts);
 api::ProblemDetails out_of_memory_problem(const JobId& id);
 api::ProblemDetails internal_problem(const JobId& id);                   // the log has the rest
 api::ProblemDetails faults_problem(std::vector<renderer::Fault> faults); // as one list holds them
+
+// As the store keeps it.
+JobFailure failure_of(const api::ProblemDetails& problem);
 
 // Meshes that do not import, by their place in the scene, told at every object that uses one.
 using FailedMeshes = std::map<std::uint32_t, ImportFailure>;

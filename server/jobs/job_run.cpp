@@ -102,10 +102,10 @@ JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, const ren
     outcome.phase = LivePhase::succeeded;
     outcome.result.image_digest = digest_of(std::span<const std::byte>(*bytes));
     outcome.result.report_json =
-        api::write_report(rendered.report, run.id, run.render_key, run.request.settings.quality);
+        api::write_report(rendered.report, run.id, run.render_key, run.request.settings.quality, false);
     api::JobRequest executed = run.request;
     executed.scene = std::move(scene.description);
-    outcome.result.scene_json = api::write_job(executed);
+    outcome.result.scene_json = api::write_job(executed, false);
     outcome.result.samples = rendered.report.accuracy.samples;
     outcome.result.reusable = rendered.report.accuracy.stop_reason == renderer::StopReason::samples;
     outcome.non_finite_samples = rendered.report.numerics.non_finite_samples;

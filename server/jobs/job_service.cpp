@@ -38,7 +38,13 @@ std::chrono::seconds retention_of(const renderer::Limits& limits)
 struct JobService::State {
     State(Store& the_store, BlobStore& the_blobs, ImportService& the_imports, const JobServiceOptions& given)
         : store(the_store), blobs(the_blobs), imports(the_imports), options(given),
-          keeper({the_store, the_blobs, live, pictures, given.log, retention_of(given.limits)}),
+          keeper({the_store,
+                  the_blobs,
+                  live,
+                  pictures,
+                  given.log,
+                  retention_of(given.limits),
+                  given.limits.total_result_bytes}),
           worker({the_store, the_blobs, the_imports, live, keeper, estimate, given.log, given.limits},
                  given.threads),
           stored_pictures({the_store, the_blobs, live, pictures, keeper, given.log})
@@ -59,8 +65,9 @@ struct JobService::State {
 
     std::optional<api::JobView> view(const JobId& id, const std::optional<LiveJob>& live_job);
     void end_at_once(const JobId& id, OutcomePtr outcome);
-    std::variant<JobOutcome, api::ProblemDetails> finished(const JobId& id);
-    bool has_stored_result(const std::string& render_key);
+    enum class Read : std::uint8_t { picture, whole };
+    std::variant<JobOutcome, api::ProblemDetails> finished(const JobId& id, Read read);
+    bool use_stored_result(const std::string& render_key);
 };
 
 JobService::JobService(Store& store,
@@ -97,10 +104,12 @@ bool JobService::draining() const
 }
 
 // A result whose picture is gone or was found damaged is not for others.
-bool JobService::State::has_stored_result(const std::string& render_key)
+bool JobService::State::use_stored_result(const std::string& render_key)
 {
-    const std::optional<JobResult> known = store.find_result({}, render_key);
-    return known && blobs.has(BlobStore::Kind::result, known->image_digest);
+    const std::optional<std::string> picture = store.find_picture({}, render_key);
+    if (!picture || !blobs.has(BlobStore::Kind::result, *picture)) return false;
+    blobs.touch(BlobStore::Kind::result, *picture);
+    return true;
 }
 
 std::variant<SubmitAnswer, api::ProblemDetails> JobService::submit(const SubmitWords& words)
@@ -111,7 +120,9 @@ std::variant<SubmitAnswer, api::ProblemDetails> JobService::submit(const SubmitW
     if (auto* problem = std::get_if<api::ProblemDetails>(&read)) return std::move(*problem);
     auto& submission = std::get<Submission>(read);
     SubmitRequest& request = submission.request;
-    request.allow_reuse = request.allow_reuse && s.has_stored_result(request.spec.render_key);
+    request.allow_reuse = request.allow_reuse && s.use_stored_result(request.spec.render_key);
+    if (!s.keeper.make_room(request.spec.request_json.size()))
+        return results_full_problem(s.options.limits.total_result_bytes);
     for (const std::string& digest : request.spec.asset_digests)
         s.blobs.touch(BlobStore::Kind::asset, digest);
 
@@ -149,7 +160,7 @@ std::variant<SubmitAnswer, api::ProblemDetails> JobService::submit(const SubmitW
 
 std::optional<api::JobView> JobService::State::view(const JobId& id, const std::optional<LiveJob>& live_job)
 {
-    const std::optional<JobRecord> record = store.get({}, id);
+    const std::optional<JobRecord> record = store.find({}, id);
     if (!record) return std::nullopt;
     const bool waits = record->state == StoredState::queued;
     return view_of(*record, live_job, waits ? store.queue_position(id) : std::nullopt);
@@ -174,26 +185,27 @@ JobService::wait(const JobId& id, std::chrono::milliseconds timeout, const std::
     }
 }
 
-std::variant<std::string, api::ProblemDetails> JobService::list(const ListQuery& query)
+std::variant<std::string, api::ProblemDetails> JobService::list(const ListWords& words)
 {
     // As for one job, memory is read before the store: an outcome goes from there to here.
     const std::unordered_map<JobId, LiveJob> live = state_->live.all();
-    ListQuery rest = query;
-    for (const auto& [id, job] : live)
-        if (query.state && ended_state_of(job) == query.state) rest.also.push_back(id);
+    ListQuery rest{.tenant = {}, .label = words.label, .cursor = words.cursor};
+    if (words.state) rest.state = stored_state_of(*words.state);
+    for (const auto& [id, job] : live) // that are in this state before the store knows
+        if (job.phase != LivePhase::queued && words.state == state_of(job.phase)) rest.also.push_back(id);
     std::vector<api::JobView> views;
-    do { // more than once where jobs of a page turn out to be in another state by now
-        rest.limit = query.limit - static_cast<std::uint32_t>(views.size());
+    do { // more than once where jobs of a page are in another state than the store says
+        rest.limit = words.limit - static_cast<std::uint32_t>(views.size());
         const ListPage page = state_->store.list(rest);
         if (page.bad_cursor) return bad_cursor_problem();
         for (const JobRecord& record : page.jobs) {
             const auto known = live.find(record.id);
             api::JobView view = view_of(
                 record, known == live.end() ? std::nullopt : std::optional(known->second), std::nullopt);
-            if (!query.state || stored_state_of(view.state) == *query.state) views.push_back(std::move(view));
+            if (!words.state || view.state == *words.state) views.push_back(std::move(view));
         }
         rest.cursor = page.next_cursor;
-    } while (!rest.cursor.empty() && views.size() < query.limit);
+    } while (!rest.cursor.empty() && views.size() < words.limit);
     return api::write_job_list(views, rest.cursor);
 }
 
@@ -218,7 +230,7 @@ std::optional<api::ProblemDetails> JobService::remove(const JobId& id)
     if (!cancel(id)) return not_found_problem(id);
     const auto deadline = std::chrono::steady_clock::now() + kRemovalPatience;
     while (s.live.wait_forgotten(id, deadline)) {
-        const std::optional<JobRecord> record = s.store.get({}, id);
+        const std::optional<JobRecord> record = s.store.find({}, id);
         if (!record) return not_found_problem(id);
         if (s.store.remove({}, id)) {
             s.live.forget(id); // wakes who waits for it
@@ -232,10 +244,10 @@ std::optional<api::ProblemDetails> JobService::remove(const JobId& id)
     return still_ending_problem(id);
 }
 
-std::variant<JobOutcome, api::ProblemDetails> JobService::State::finished(const JobId& id)
+std::variant<JobOutcome, api::ProblemDetails> JobService::State::finished(const JobId& id, Read read)
 {
     const LiveJobs::Snapshot now = live.snapshot(id);
-    const std::optional<JobRecord> record = store.get({}, id);
+    const std::optional<JobRecord> record = read == Read::whole ? store.get({}, id) : store.find({}, id);
     if (!record) return not_found_problem(id);
     const api::JobView seen = view_of(*record, now.job, std::nullopt);
     switch (seen.state) {
@@ -256,12 +268,13 @@ std::variant<JobOutcome, api::ProblemDetails> JobService::State::finished(const 
     if (!record->result) return *now.job->outcome;
     JobOutcome outcome{.phase = LivePhase::succeeded};
     outcome.result = *record->result;
+    blobs.touch(BlobStore::Kind::result, outcome.result.image_digest); // whatever of it is looked at
     return outcome;
 }
 
 std::variant<JobImage, api::ProblemDetails> JobService::image(const JobId& id)
 {
-    auto ended = state_->finished(id);
+    auto ended = state_->finished(id, State::Read::picture);
     if (auto* problem = std::get_if<api::ProblemDetails>(&ended)) return std::move(*problem);
     const auto& outcome = std::get<JobOutcome>(ended);
     const std::string& digest = outcome.result.image_digest;
@@ -271,7 +284,7 @@ std::variant<JobImage, api::ProblemDetails> JobService::image(const JobId& id)
 
 std::variant<std::string, api::ProblemDetails> JobService::report(const JobId& id)
 {
-    auto ended = state_->finished(id);
+    auto ended = state_->finished(id, State::Read::whole);
     if (auto* problem = std::get_if<api::ProblemDetails>(&ended)) return std::move(*problem);
     // It was written by the job that rendered; who shares the render has it under a name of its own.
     return api::readdress_report(std::get<JobOutcome>(ended).result.report_json, id);
@@ -279,11 +292,11 @@ std::variant<std::string, api::ProblemDetails> JobService::report(const JobId& i
 
 std::variant<std::string, api::ProblemDetails> JobService::scene(const JobId& id)
 {
-    auto ended = state_->finished(id);
-    if (auto* outcome = std::get_if<JobOutcome>(&ended)) return std::move(outcome->result.scene_json);
+    auto ended = state_->finished(id, State::Read::whole);
+    if (auto* outcome = std::get_if<JobOutcome>(&ended)) return api::indented(outcome->result.scene_json);
     const std::optional<JobRecord> record = state_->store.get({}, id);
     if (!record) return not_found_problem(id);
-    return record->spec.request_json;
+    return api::indented(record->spec.request_json);
 }
 
 int JobService::estimated_wait_s() const

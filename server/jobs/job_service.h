@@ -37,6 +37,14 @@ struct SubmitAnswer {
     bool replayed = false; // Idempotency-Replayed: true
 };
 
+// What a list is asked for.
+struct ListWords {
+    std::optional<api::JobState> state{};
+    std::optional<std::pair<std::string, std::string>> label{}; // name, value
+    std::uint32_t limit = 50;
+    std::string cursor{}; // empty: from the newest
+};
+
 struct JobImage {
     std::shared_ptr<const std::vector<std::byte>> png;
     std::string digest; // "sha256:..." of the bytes
@@ -66,7 +74,7 @@ public:
     // Waits until the job is final or, with `known_etag`, until its view changes; at most `timeout`.
     std::optional<api::JobView>
     wait(const JobId& id, std::chrono::milliseconds timeout, const std::string& known_etag = {});
-    std::variant<std::string, api::ProblemDetails> list(const ListQuery& query); // JSON text
+    std::variant<std::string, api::ProblemDetails> list(const ListWords& words); // JSON text
     std::optional<api::JobView> cancel(const JobId& id);                         // idempotent
     // Cancels if active, then forgets. Nothing; or why not: 404, 503 still_ending.
     std::optional<api::ProblemDetails> remove(const JobId& id);

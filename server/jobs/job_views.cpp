@@ -2,30 +2,11 @@
 
 #include "server/store/store_rules.h"
 
+#include <utility>
+
 namespace server {
 
 namespace {
-
-api::JobState state_of(LivePhase phase)
-{
-    switch (phase) {
-    case LivePhase::queued:
-        return api::JobState::queued;
-    case LivePhase::preparing:
-        return api::JobState::preparing;
-    case LivePhase::running:
-        return api::JobState::running;
-    case LivePhase::canceling:
-        return api::JobState::canceling;
-    case LivePhase::succeeded:
-        return api::JobState::succeeded;
-    case LivePhase::failed:
-        return api::JobState::failed;
-    case LivePhase::canceled:
-        return api::JobState::canceled;
-    }
-    return api::JobState::queued;
-}
 
 api::JobState state_of(const JobRecord& record)
 {
@@ -64,7 +45,9 @@ api::JobView stored_view(const JobRecord& record)
         view.samples_done = record.result->samples;
     }
     api::ProblemDetails error;
-    if (!record.error_json.empty() && api::read_problem(record.error_json, error)) view.error = error;
+    const JobFailure& failure = record.failure;
+    const std::string& told = failure.whole_json.empty() ? failure.summary_json : failure.whole_json;
+    if (!told.empty() && api::read_problem(told, error)) view.error = std::move(error);
     return view;
 }
 
@@ -78,6 +61,27 @@ void add_outcome(api::JobView& view, const JobOutcome& outcome)
 }
 
 } // namespace
+
+api::JobState state_of(LivePhase phase)
+{
+    switch (phase) {
+    case LivePhase::queued:
+        return api::JobState::queued;
+    case LivePhase::preparing:
+        return api::JobState::preparing;
+    case LivePhase::running:
+        return api::JobState::running;
+    case LivePhase::canceling:
+        return api::JobState::canceling;
+    case LivePhase::succeeded:
+        return api::JobState::succeeded;
+    case LivePhase::failed:
+        return api::JobState::failed;
+    case LivePhase::canceled:
+        return api::JobState::canceled;
+    }
+    return api::JobState::queued;
+}
 
 StoredState stored_state_of(api::JobState seen)
 {
@@ -98,12 +102,6 @@ StoredState stored_state_of(api::JobState seen)
         return StoredState::expired;
     }
     return StoredState::queued;
-}
-
-std::optional<StoredState> ended_state_of(const LiveJob& live)
-{
-    if (!live.outcome) return std::nullopt;
-    return stored_state_of(state_of(live.phase));
 }
 
 api::JobView view_of(const JobRecord& record,

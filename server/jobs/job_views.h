@@ -17,7 +17,6 @@ api::JobView view_of(const JobRecord& record,
 
 // The state under which the store lists, or will list, a job that is seen so.
 StoredState stored_state_of(api::JobState seen);
-// The same of a job that only memory knows to have ended.
-std::optional<StoredState> ended_state_of(const LiveJob& live);
+api::JobState state_of(LivePhase phase);
 
 } // namespace server

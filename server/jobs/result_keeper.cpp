@@ -1,6 +1,8 @@
 #include "server/jobs/result_keeper.h"
 
 #include "server/jobs/clock.h"
+#include "server/jobs/job_problems.h"
+#include "server/store/store_rules.h"
 
 #include <algorithm>
 #include <exception>
@@ -97,6 +99,7 @@ void ResultKeeper::store_outcome(const KeptOutcome& kept)
     const JobOutcome& outcome = *kept.outcome;
     {
         const std::lock_guard results(results_);
+        if (outcome.png && !fits(stored_bytes_of(outcome))) free_room(stored_bytes_of(outcome));
         if (outcome.png) rooms_.blobs.put(BlobStore::Kind::result, *outcome.png);
         if (kept.lease) store_lease(kept, *kept.lease);
         for (const JobId& id : kept.queued)
@@ -116,7 +119,7 @@ void ResultKeeper::store_lease(const KeptOutcome& kept, const Lease& lease)
         ours = rooms_.store.complete(lease, outcome.result, outcome.finished_ms, kept.reused);
         break;
     case LivePhase::failed:
-        ours = rooms_.store.fail(lease, api::write_problem(outcome.error), false, outcome.finished_ms);
+        ours = rooms_.store.fail(lease, failure_of(outcome.error), false, outcome.finished_ms);
         break;
     case LivePhase::canceled:
         ours = rooms_.store.confirm_cancel(lease, outcome.finished_ms);
@@ -134,9 +137,8 @@ void ResultKeeper::store_lease(const KeptOutcome& kept, const Lease& lease)
 // lease.
 void ResultKeeper::forget_if_final(const JobId& id)
 {
-    const std::optional<JobRecord> record = rooms_.store.get({}, id);
-    if (record && record->state != StoredState::queued && record->state != StoredState::leased)
-        rooms_.live.forget(id);
+    const std::optional<JobRecord> record = rooms_.store.find({}, id);
+    if (!record || is_final(record->state)) rooms_.live.forget(id);
 }
 
 void ResultKeeper::give_back(const KeptOutcome& kept)
@@ -156,6 +158,7 @@ void ResultKeeper::sweep()
         const std::size_t expired =
             rooms_.store.sweep(unix_ms() - std::chrono::milliseconds(rooms_.retention).count());
         collect_all();
+        make_room(0);
         if (expired != 0) {
             rooms_.log.write(
                 LogLevel::info, "results_expired", {{"jobs", static_cast<std::int64_t>(expired)}});
@@ -173,19 +176,17 @@ void ResultKeeper::collect_all()
     const std::vector<std::string> stored = rooms_.blobs.list(BlobStore::Kind::result);
     if (stored.empty()) return;
     const std::vector<std::string> live = rooms_.live.image_digests();
-    const std::vector<std::string> referenced = rooms_.store.referenced_digests();
+    const std::vector<std::string> shown = rooms_.store.pictures();
     std::set<std::string> needed(live.begin(), live.end());
-    needed.insert(referenced.begin(), referenced.end());
+    needed.insert(shown.begin(), shown.end());
     for (const std::string& digest : stored)
         if (!needed.contains(digest)) rooms_.blobs.remove(BlobStore::Kind::result, digest);
 }
 
 bool ResultKeeper::is_needed(const std::string& digest)
 {
-    const auto names = [&](const std::vector<std::string>& digests) {
-        return std::find(digests.begin(), digests.end(), digest) != digests.end();
-    };
-    return names(rooms_.live.image_digests()) || names(rooms_.store.referenced_digests());
+    const std::vector<std::string> live = rooms_.live.image_digests();
+    return std::find(live.begin(), live.end(), digest) != live.end() || rooms_.store.shows(digest);
 }
 
 void ResultKeeper::collect(const std::string& image_digest)

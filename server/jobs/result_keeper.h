@@ -2,7 +2,9 @@
 //
 // A finished picture is served from memory at once; this thread writes it, then its row. If the disk refuses,
 // it tries again until it works or the service stops (then the job is released, and renders again to the same
-// bytes).
+// bytes). The results least recently used go first where all jobs together are over their limit; a picture
+// goes with everything of the jobs that show it, and takes them to `expired`. Where the rows of the jobs alone
+// are over half of it, those that have no result are forgotten before that.
 // Threads  one of its own; every function may be called from any thread.
 // Errors   logged here, never thrown, but by collect().
 #pragma once
@@ -33,6 +35,9 @@ struct KeptOutcome {
     bool reused = false; // another job's render made it
 };
 
+// What it will take on disk, but for what others have of it.
+std::uint64_t stored_bytes_of(const JobOutcome& outcome);
+
 class ResultKeeper {
 public:
     struct Rooms {
@@ -42,6 +47,7 @@ public:
         PictureCache& pictures;
         Log log;
         std::chrono::seconds retention;
+        std::uint64_t most_bytes; // of pictures and rows; what is finished last stays whatever it takes
     };
     explicit ResultKeeper(const Rooms& rooms) : rooms_(rooms) {}
     ~ResultKeeper() { stop(); }
@@ -54,6 +60,8 @@ public:
     // Takes it over. With a lease, waits while several others are not yet written: the disk's speed bounds
     // memory.
     void keep(KeptOutcome kept);
+    // Lets results go until `bytes` more fit. False: they do not, what is here is not finished.
+    bool make_room(std::uint64_t bytes);
     // While this is held, no stored picture is removed.
     std::unique_lock<std::mutex> hold_results() { return std::unique_lock(results_); }
     // Removes the picture if no job needs it any more.
@@ -69,6 +77,10 @@ private:
     void sweep();
     void collect_all();
     bool is_needed(const std::string& digest);
+    std::uint64_t used_bytes();
+    bool fits(std::uint64_t bytes);
+    bool free_room(std::uint64_t bytes); // results_ is held
+    bool expire_pictures(std::uint64_t bytes);
 
     Rooms rooms_;
     std::mutex results_; // held while pictures are written or removed

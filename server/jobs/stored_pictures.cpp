@@ -45,6 +45,7 @@ StoredPictures::render_again(const JobId& id, const std::string& digest, const s
     rooms_.log.write(LogLevel::error, "picture_lost", {{"job", id}, {"what", why}});
     const std::optional<JobRecord> record = rooms_.store.get({}, id);
     if (!record) return not_found_problem(id);
+    if (record->state == StoredState::expired) return expired_problem(id); // it made room meanwhile
     for (const std::string& asset : record->spec.asset_digests)
         if (!rooms_.blobs.has(BlobStore::Kind::asset, asset)) return picture_lost_problem(id, asset);
     rooms_.blobs.remove(BlobStore::Kind::result, digest); // out of the way of the next one

@@ -120,7 +120,7 @@ void Worker::attempt(const Task& task)
 
 bool Worker::end_with_known_result(const Task& task, const Sharing& sharing)
 {
-    if (!may_reuse_stored(sharing) || !rooms_.store.find_result({}, sharing.render_key)) return false;
+    if (!may_reuse_stored(sharing) || !rooms_.store.find_picture({}, sharing.render_key)) return false;
     LiveJobs::Settled settled;
     {
         const auto hold = rooms_.keeper.hold_results();
@@ -151,11 +151,19 @@ void Worker::run_request(const Task& task, const api::JobRequest& request)
                          }};
     auto ended = run_job(run, {rooms_.imports, pool_, rooms_.limits});
     if (auto* outcome = std::get_if<JobOutcome>(&ended))
-        end(task, std::move(*outcome));
+        end_rendered(task, std::move(*outcome));
     else if (auto* error = std::get_if<api::ProblemDetails>(&ended))
         end_failed(task, std::move(*error));
     else
         end_stopped(task, request);
+}
+
+void Worker::end_rendered(const Task& task, JobOutcome outcome)
+{
+    const std::uint64_t bytes = stored_bytes_of(outcome);
+    if (bytes > rooms_.limits.total_result_bytes)
+        return end_failed(task, result_too_large_problem(bytes, rooms_.limits));
+    end(task, std::move(outcome));
 }
 
 void Worker::end_stopped(const Task& task, const api::JobRequest& request)
@@ -205,8 +213,8 @@ void Worker::retry_later(const Task& task, const std::string& what)
     const JobId& id = task.lease.job;
     rooms_.log.write(LogLevel::error, "job_interrupted", {{"job", id}, {"what", what}});
     try {
-        rooms_.store.fail(task.lease, api::write_problem(internal_problem(id)), true, unix_ms());
-        const std::optional<JobRecord> record = rooms_.store.get({}, id);
+        rooms_.store.fail(task.lease, failure_of(internal_problem(id)), true, unix_ms());
+        const std::optional<JobRecord> record = rooms_.store.find({}, id);
         if (record && record->state == StoredState::queued)
             rooms_.live.requeue(id);
         else

@@ -59,6 +59,7 @@ private:
     void attempt(const Task& task);
     void run_request(const Task& task, const api::JobRequest& request);
     bool end_with_known_result(const Task& task, const Sharing& sharing);
+    void end_rendered(const Task& task, JobOutcome outcome);
     void end_stopped(const Task& task, const api::JobRequest& request);
     void end(const Task& task, JobOutcome outcome);
     void end_failed(const Task& task, api::ProblemDetails error);

@@ -43,6 +43,17 @@ void find_blobs(const std::filesystem::path& folder, std::vector<FoundBlob>& fou
 BlobFolder::BlobFolder(std::filesystem::path folder) : folder_(std::move(folder))
 {
     make_folder(folder_);
+    static constexpr std::string_view digits = "0123456789abcdef";
+    bool made = false;
+    for (const char high : digits)
+        for (const char low : digits) {
+            const std::filesystem::path folder_of_byte = folder_ / std::string{high, low};
+            if (::mkdir(folder_of_byte.c_str(), 0750) == 0)
+                made = true;
+            else if (errno != EEXIST)
+                throw_io_error("make the folder", folder_of_byte, errno);
+        }
+    if (made) sync_folder(folder_);
 }
 
 BlobIndex BlobFolder::scan() const
@@ -83,17 +94,17 @@ std::pair<FileDescriptor, std::filesystem::path> BlobFolder::make_temporary() co
 void BlobFolder::adopt(const std::filesystem::path& temporary, std::string_view digest) const
 {
     const std::filesystem::path target = path(digest);
-    make_folder(target.parent_path());
     if (::rename(temporary.c_str(), target.c_str()) != 0) throw_io_error("rename a file to", target, errno);
 }
 
-void BlobFolder::sync(std::string_view digest) const
+void BlobFolder::sync_name(std::string_view digest) const
 {
-    const std::filesystem::path file = path(digest);
-    const FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-    if (!fd) throw_io_error("open", file, errno);
-    sync_file(fd, file);
-    sync_folder(file.parent_path());
+    sync_folder(path(digest).parent_path());
+}
+
+void BlobFolder::sync_all() const
+{
+    sync_file_system(folder_);
 }
 
 std::optional<FileDescriptor> BlobFolder::open(std::string_view digest) const
@@ -132,12 +143,15 @@ void BlobFolder::mark_used(std::string_view digest) const
     ::utimensat(AT_FDCWD, path(digest).c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
 }
 
-bool BlobFolder::remove(std::string_view digest) const
+std::optional<std::filesystem::path> BlobFolder::set_aside(std::string_view digest) const
 {
     const std::filesystem::path file = path(digest);
-    if (::unlink(file.c_str()) == 0) return true;
-    if (errno != ENOENT) throw_io_error("remove", file, errno);
-    return false;
+    std::filesystem::path aside = folder_ / (std::string(kTemporaryPrefix) + file.filename().string());
+    if (::rename(file.c_str(), aside.c_str()) == 0) return aside;
+    if (errno == ENOENT) return std::nullopt;
+    // A full disk may have no room for another name.
+    if (::unlink(file.c_str()) != 0 && errno != ENOENT) throw_io_error("remove", file, errno);
+    return std::filesystem::path();
 }
 
 } // namespace server

@@ -1,13 +1,17 @@
 #include "server/store/blob_index.h"
 
+#include <utility>
+
 namespace server {
 
-void BlobIndex::add(std::string_view digest, const Blob& blob)
+std::uint64_t BlobIndex::add(std::string_view digest, Blob blob)
 {
     remove(digest);
-    const auto place = order_.insert(order_.end(), std::string(digest));
-    entries_.emplace(std::string(digest), Entry{blob, place});
+    blob.file = ++last_file_;
     total_bytes_ += blob.bytes;
+    const auto place = order_.insert(order_.end(), std::string(digest));
+    entries_.emplace(std::string(digest), Entry{std::move(blob), place});
+    return last_file_;
 }
 
 void BlobIndex::remove(std::string_view digest)
@@ -35,6 +39,12 @@ const BlobIndex::Blob* BlobIndex::find(std::string_view digest) const
 {
     const auto found = entries_.find(std::string(digest));
     return found == entries_.end() ? nullptr : &found->second.blob;
+}
+
+BlobIndex::Blob* BlobIndex::find(std::string_view digest, std::uint64_t file)
+{
+    Blob* blob = find(digest);
+    return blob != nullptr && blob->file == file ? blob : nullptr;
 }
 
 } // namespace server

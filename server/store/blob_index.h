@@ -20,17 +20,20 @@ class BlobIndex {
 public:
     struct Blob {
         std::uint64_t bytes = 0;
+        std::uint64_t file = 0;                   // its number, for who looks at it without the mutex
         bool synced = false;                      // known to outlast a power cut
         bool damaged = false;                     // found not to be what its name says
         std::shared_ptr<const BlobProof> proof{}; // once it was opened to be read in pieces
     };
 
-    // As the most recently used; replaces what was there.
-    void add(std::string_view digest, const Blob& blob);
+    // As the most recently used, under a new number; replaces what was there.
+    std::uint64_t add(std::string_view digest, Blob blob);
     void remove(std::string_view digest);
     void use(std::string_view digest); // makes it the most recently used
     Blob* find(std::string_view digest);
     const Blob* find(std::string_view digest) const;
+    // Only if it is still that file.
+    Blob* find(std::string_view digest, std::uint64_t file);
 
     std::uint64_t total_bytes() const { return total_bytes_; }
     const std::list<std::string>& digests() const { return order_; } // least recently used first
@@ -43,6 +46,7 @@ private:
     std::list<std::string> order_;
     std::unordered_map<std::string, Entry> entries_;
     std::uint64_t total_bytes_ = 0;
+    std::uint64_t last_file_ = 0;
 };
 
 } // namespace server

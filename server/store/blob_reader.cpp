@@ -53,10 +53,22 @@ prove_blob(const FileDescriptor& file, const std::filesystem::path& path, std::s
     return proof;
 }
 
+bool have_same_bytes(const FileDescriptor& a, const FileDescriptor& b, const std::filesystem::path& path)
+{
+    std::vector<std::byte> of_a(kBlobPiece), of_b(kBlobPiece);
+    for (std::uint64_t offset = 0;; offset += kBlobPiece) {
+        const std::size_t count = read_at(a, offset, of_a, path);
+        if (read_at(b, offset, of_b, path) != count ||
+            !std::equal(of_a.begin(), of_a.begin() + static_cast<std::ptrdiff_t>(count), of_b.begin()))
+            return false;
+        if (count < kBlobPiece) return true;
+    }
+}
+
 BlobReader::BlobReader(FileDescriptor file,
                        std::filesystem::path path,
                        std::shared_ptr<const BlobProof> proof,
-                       std::function<StoreError()> damaged)
+                       std::function<DamagedBlob()> damaged)
     : file_(std::move(file)), path_(std::move(path)), proof_(std::move(proof)), damaged_(std::move(damaged))
 {
 }

@@ -9,13 +9,13 @@
 // Memory   one piece a reader, none after let_go(); 32 bytes a piece of a blob that was opened.
 // Cost     first open: the file is read and hashed twice over. Then only the pieces that are asked for are.
 // Threads  one at a time. The file stays readable when the blob is removed.
-// Errors   StoreError: a piece that is not what it was, named by its blob, which counts as missing from then
-//          on; a file that cannot be read.
+// Errors   DamagedBlob: a piece that is not what it was, named by its blob, which counts as missing from then
+//          on; StoreError: a file that cannot be read.
 #pragma once
 
+#include "server/store/damaged_blob.h"
 #include "server/store/file_io.h"
 #include "server/store/sha256.h"
-#include "server/store/store.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -40,13 +40,16 @@ struct BlobProof {
 std::shared_ptr<const BlobProof>
 prove_blob(const FileDescriptor& file, const std::filesystem::path& path, std::string_view digest);
 
+// The same, a piece at a time: whether two files hold the same bytes.
+bool have_same_bytes(const FileDescriptor& a, const FileDescriptor& b, const std::filesystem::path& path);
+
 class BlobReader {
 public:
     // `damaged` is called when a piece does not hold; at() throws what it returns.
     BlobReader(FileDescriptor file,
                std::filesystem::path path,
                std::shared_ptr<const BlobProof> proof,
-               std::function<StoreError()> damaged);
+               std::function<DamagedBlob()> damaged);
 
     std::uint64_t size() const { return proof_->size; }
     // From `offset`, which is less than size(), to the end of its piece; good until the next call.
@@ -59,7 +62,7 @@ private:
     FileDescriptor file_;
     std::filesystem::path path_;
     std::shared_ptr<const BlobProof> proof_;
-    std::function<StoreError()> damaged_;
+    std::function<DamagedBlob()> damaged_;
     std::vector<std::byte> buffer_;
     std::uint64_t held_ = kNone; // the piece that the buffer holds
 };

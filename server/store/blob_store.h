@@ -3,11 +3,12 @@
 // On disk     <folder>/assets/ab/<64 hex digits>, <folder>/results/...; a file's time of modification is its
 //             last use.
 // Durability  put() and Writer::commit() are durable when they return: temporary file, fsync, rename, fsync of
-//             the folders. Temporary files that a crash left are removed at open.
+//             the folder. Many blobs at once are cheaper written without and made durable together. Temporary
+//             files that a crash left are removed at open.
 // Threads     every function may be called from any thread; a Writer belongs to one thread at a time.
-// Errors      StoreError for the world's failures (storage_full told apart); a damaged blob is reported by name
-//             and never served; from then on it counts as missing, so that uploading it again mends it. What
-//             is not a digest names no blob.
+// Errors      StoreError for the world's failures (storage_full told apart); a damaged blob is never served but
+//             thrown as DamagedBlob, and counts as missing from then on. Writing it again mends it, also where
+//             nobody had noticed. What is not a digest names no blob.
 // Cost        a few hundred bytes of memory a blob; has(), size() and total_bytes() do not touch the disk.
 #pragma once
 
@@ -44,11 +45,13 @@ public:
         virtual void append(std::span<const std::byte> bytes) = 0;
         virtual std::uint64_t bytes() const = 0;
         virtual std::string digest() = 0; // "sha256:<hex>" of what was appended; call once, at the end
-        virtual bool commit() = 0;        // durable; false if it was there already
+        virtual bool commit() = 0;        // false if it was there already
     };
-    std::unique_ptr<Writer> write(Kind kind);
-    // `durable` false: for what can be made again (pictures), no fsync.
+    std::unique_ptr<Writer> write(Kind kind, bool durable = true);
+    // `durable` false: no fsync, for what can be made again or is made durable later.
     std::string put(Kind kind, std::span<const std::byte> bytes, bool durable = true);
+    // Those of them that are there; one round of syncing for many.
+    void make_durable(Kind kind, const std::vector<std::string>& digests);
 
     bool has(Kind kind, std::string_view digest) const;
     std::optional<std::uint64_t> size(Kind kind, std::string_view digest) const;
@@ -64,9 +67,11 @@ public:
 
     std::uint64_t total_bytes(Kind kind) const;
     std::vector<std::string> list(Kind kind) const; // least recently used first
-    // Removes least recently used assets that `keep` does not name until `bytes` more fit under `limit`.
-    // False, and nothing is removed, if they cannot.
-    bool make_room(std::uint64_t bytes, std::uint64_t limit, const std::vector<std::string>& keep);
+    // Removes least recently used assets that are not in use until `bytes` more fit under `limit`; who is in use
+    // is only asked for where something must go. False, and nothing is removed, if they cannot.
+    bool make_room(std::uint64_t bytes,
+                   std::uint64_t limit,
+                   const std::function<std::vector<std::string>()>& in_use);
 
 private:
     struct State;

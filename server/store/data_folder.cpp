@@ -7,7 +7,6 @@
 #include <fcntl.h>
 #include <string>
 #include <sys/file.h>
-#include <unistd.h>
 #include <utility>
 
 namespace server {
@@ -26,13 +25,7 @@ DataFolder::DataFolder(const std::filesystem::path& folder) : path_(std::filesys
                              " is in use by another process: stop it, or give this one a folder of its own",
                          false);
     }
-    lock_fd_ = lock.release();
-}
-
-// Closing lets go of the lock; the file stays, since removing it would let two processes lock two files.
-DataFolder::~DataFolder()
-{
-    ::close(lock_fd_);
+    lock_ = std::move(lock);
 }
 
 } // namespace server

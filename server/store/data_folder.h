@@ -3,6 +3,8 @@
 // Errors  StoreError when it cannot be made or another process holds it (the message names the folder).
 #pragma once
 
+#include "server/store/file_descriptor.h"
+
 #include <filesystem>
 
 namespace server {
@@ -10,7 +12,6 @@ namespace server {
 class DataFolder {
 public:
     explicit DataFolder(const std::filesystem::path& folder);
-    ~DataFolder();
     DataFolder(const DataFolder&) = delete;
     DataFolder& operator=(const DataFolder&) = delete;
 
@@ -18,7 +19,8 @@ public:
 
 private:
     std::filesystem::path path_;
-    int lock_fd_ = -1;
+    // Closing it lets go of the lock; the file stays, since removing it would let two processes lock two files.
+    FileDescriptor lock_;
 };
 
 } // namespace server

@@ -7,29 +7,8 @@
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
-#include <utility>
 
 namespace server {
-
-FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept
-{
-    if (this != &other) {
-        reset();
-        fd_ = other.release();
-    }
-    return *this;
-}
-
-int FileDescriptor::release()
-{
-    return std::exchange(fd_, -1);
-}
-
-void FileDescriptor::reset()
-{
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-}
 
 void throw_io_error(const std::string& action, const std::filesystem::path& path, int error)
 {
@@ -55,11 +34,25 @@ void sync_file(const FileDescriptor& file, const std::filesystem::path& path)
     if (::fsync(file.get()) != 0) throw_io_error("sync", path, errno);
 }
 
+namespace {
+
+FileDescriptor open_folder(const std::filesystem::path& folder)
+{
+    FileDescriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!fd) throw_io_error("open", folder, errno);
+    return fd;
+}
+
+} // namespace
+
 void sync_folder(const std::filesystem::path& folder)
 {
-    const FileDescriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!fd) throw_io_error("open", folder, errno);
-    sync_file(fd, folder);
+    sync_file(open_folder(folder), folder);
+}
+
+void sync_file_system(const std::filesystem::path& folder)
+{
+    if (::syncfs(open_folder(folder).get()) != 0) throw_io_error("sync the file system of", folder, errno);
 }
 
 bool make_folder(const std::filesystem::path& folder)

@@ -1,7 +1,9 @@
-// File access that keeps its word: descriptors that close themselves, whole writes, folders made to last.
+// File access that keeps its word: whole writes, files and folders made to last.
 //
 // Errors  StoreError that names the path and what was attempted; ENOSPC and EDQUOT as storage_full.
 #pragma once
+
+#include "server/store/file_descriptor.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -9,24 +11,6 @@
 #include <string>
 
 namespace server {
-
-class FileDescriptor {
-public:
-    explicit FileDescriptor(int fd = -1) : fd_(fd) {}
-    ~FileDescriptor() { reset(); }
-    FileDescriptor(FileDescriptor&& other) noexcept : fd_(other.release()) {}
-    FileDescriptor& operator=(FileDescriptor&& other) noexcept;
-    FileDescriptor(const FileDescriptor&) = delete;
-    FileDescriptor& operator=(const FileDescriptor&) = delete;
-
-    int get() const { return fd_; }
-    explicit operator bool() const { return fd_ >= 0; }
-    int release();
-    void reset();
-
-private:
-    int fd_;
-};
 
 // Throws StoreError: "cannot <action> <path>: <errno's words>".
 [[noreturn]] void throw_io_error(const std::string& action, const std::filesystem::path& path, int error);
@@ -36,6 +20,8 @@ void write_all(const FileDescriptor& file,
                const std::filesystem::path& path);
 void sync_file(const FileDescriptor& file, const std::filesystem::path& path); // fsync
 void sync_folder(const std::filesystem::path& folder); // its entries: renames, new files
+// Everything that was written to the file system that holds the folder: many files at the price of one.
+void sync_file_system(const std::filesystem::path& folder);
 // Makes the folder and what is missing above it, each new one durable in its parent. False if it was there.
 bool make_folder(const std::filesystem::path& folder);
 

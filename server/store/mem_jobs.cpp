@@ -9,14 +9,6 @@ namespace server {
 
 namespace {
 
-JobRecord without_long_texts(JobRecord job)
-{
-    job.spec.request_json.clear();
-    if (job.result) job.result->report_json.clear();
-    if (job.result) job.result->scene_json.clear();
-    return job;
-}
-
 bool matches(const JobRecord& record, const ListQuery& query)
 {
     if (record.tenant != query.tenant) return false;
@@ -28,6 +20,15 @@ bool matches(const JobRecord& record, const ListQuery& query)
 }
 
 } // namespace
+
+JobRecord without_long_texts(JobRecord job)
+{
+    job.spec.request_json.clear();
+    job.spec.asset_digests.clear();
+    if (job.result) job.result->report_json.clear();
+    if (job.result) job.result->scene_json.clear();
+    return job;
+}
 
 MemJobs::Job& MemJobs::add(JobRecord record)
 {
@@ -129,21 +130,66 @@ ListPage MemJobs::list(const ListQuery& query) const
             break;
         }
         page.jobs.push_back(without_long_texts(at->second.record));
+        page.jobs.back().failure.whole_json.clear();
         last = at->first;
     }
     return page;
 }
 
-std::vector<std::string> MemJobs::referenced_digests() const
+std::vector<std::string> MemJobs::assets_in_use() const
 {
     std::set<std::string> digests;
+    for (const auto& [sequence, job] : by_sequence)
+        if (!is_final(job.record.state))
+            digests.insert(job.record.spec.asset_digests.begin(), job.record.spec.asset_digests.end());
+    return {digests.begin(), digests.end()};
+}
+
+std::vector<std::string> MemJobs::pictures() const
+{
+    std::set<std::string> digests;
+    for (const auto& [sequence, job] : by_sequence)
+        if (job.record.result) digests.insert(job.record.result->image_digest);
+    return {digests.begin(), digests.end()};
+}
+
+std::uint64_t MemJobs::bytes() const
+{
+    std::uint64_t bytes = 0;
     for (const auto& [sequence, job] : by_sequence) {
         const JobRecord& record = job.record;
-        if (!is_final(record.state))
-            digests.insert(record.spec.asset_digests.begin(), record.spec.asset_digests.end());
-        if (record.result) digests.insert(record.result->image_digest);
+        bytes += sizeof job + record.spec.request_json.size() + record.failure.whole_json.size();
+        if (record.result) bytes += record.result->report_json.size() + record.result->scene_json.size();
     }
-    return {digests.begin(), digests.end()};
+    return bytes;
+}
+
+bool MemJobs::expire_picture(const std::string& image_digest, std::uint64_t newest)
+{
+    std::vector<JobRecord*> showing;
+    for (auto& [sequence, job] : by_sequence) {
+        if (!job.record.result || job.record.result->image_digest != image_digest) continue;
+        if (sequence > newest) return false;
+        showing.push_back(&job.record);
+    }
+    for (JobRecord* record : showing) {
+        record->state = StoredState::expired;
+        record->result.reset();
+    }
+    return true;
+}
+
+std::size_t MemJobs::forget_ended(std::size_t most)
+{
+    std::vector<std::pair<std::int64_t, std::uint64_t>> ended;
+    for (const auto& [sequence, job] : by_sequence)
+        if (is_final(job.record.state) && !job.record.result)
+            ended.emplace_back(*job.record.finished_ms, sequence);
+    std::sort(ended.begin(), ended.end());
+    ended.resize(std::min(ended.size(), most));
+    for (const auto& [finished_ms, sequence] : ended)
+        forget(sequence);
+    return ended.size();
 }
 
 std::size_t MemJobs::expire(std::int64_t before_ms)

@@ -17,6 +17,8 @@
 
 namespace server {
 
+JobRecord without_long_texts(JobRecord job); // but that of a failure
+
 class MemJobs {
 public:
     struct Job {
@@ -42,12 +44,17 @@ public:
     std::size_t waiting() const { return waiting_.size(); }
     QueueDepth depth() const;
     ListPage list(const ListQuery& query) const;
-    std::vector<std::string> referenced_digests() const;
+    std::vector<std::string> assets_in_use() const;
+    std::vector<std::string> pictures() const;
+    std::uint64_t newest() const { return last_sequence_; }
+    std::uint64_t bytes() const;
 
     void enter(Job& job, StoredState state);
     void finish(Job& job, StoredState state, std::int64_t now_ms);
     void forget(std::uint64_t sequence);
     std::size_t expire(std::int64_t before_ms); // and forgets; how many
+    bool expire_picture(const std::string& image_digest, std::uint64_t newest);
+    std::size_t forget_ended(std::size_t most);
     void forget_keys(std::int64_t before_ms);
 
     std::map<std::uint64_t, Job> by_sequence;

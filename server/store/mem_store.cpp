@@ -5,7 +5,9 @@
 #include "server/store/store_rules.h"
 #include "server/store/work_bell.h"
 
+#include <algorithm>
 #include <mutex>
+#include <utility>
 
 namespace server {
 
@@ -44,6 +46,13 @@ public:
         const Job* job = jobs_.find(tenant, id);
         if (job == nullptr) return std::nullopt;
         return job->record;
+    }
+
+    std::optional<JobRecord> find(const Tenant& tenant, const JobId& id) override
+    {
+        std::optional<JobRecord> job = get(tenant, id);
+        if (!job) return std::nullopt;
+        return without_long_texts(*std::move(job));
     }
 
     ListPage list(const ListQuery& query) override
@@ -129,6 +138,13 @@ public:
         return job->record.result;
     }
 
+    std::optional<std::string> find_picture(const Tenant& tenant, const std::string& render_key) override
+    {
+        const std::optional<JobResult> result = find_result(tenant, render_key);
+        if (!result) return std::nullopt;
+        return result->image_digest;
+    }
+
     void release(const std::vector<Lease>& leases) override
     {
         const std::lock_guard lock(mutex_);
@@ -141,7 +157,7 @@ public:
         leases_.forget(leases);
     }
 
-    bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) override
+    bool fail(const Lease& lease, const JobFailure& why, bool retry, std::int64_t now_ms) override
     {
         const std::lock_guard lock(mutex_);
         Job* job = jobs_.find_leased(lease);
@@ -149,7 +165,7 @@ public:
         leases_.forget({lease});
         const StoredState state =
             state_when_failed(retry, job->record.cancel_requested, job->record.attempts);
-        if (state == StoredState::failed) job->record.error_json = error_json;
+        if (state == StoredState::failed) job->record.failure = why;
         if (is_final(state))
             jobs_.finish(*job, state, now_ms);
         else
@@ -211,10 +227,50 @@ public:
         return jobs_.expire(before_ms);
     }
 
-    std::vector<std::string> referenced_digests() override
+    std::uint64_t newest() override
     {
         const std::lock_guard lock(mutex_);
-        return jobs_.referenced_digests();
+        return jobs_.newest();
+    }
+
+    std::vector<std::string> expire_results(const std::vector<std::string>& image_digests,
+                                            std::uint64_t newest) override
+    {
+        const std::lock_guard lock(mutex_);
+        std::vector<std::string> expired;
+        for (const std::string& digest : image_digests)
+            if (jobs_.expire_picture(digest, newest)) expired.push_back(digest);
+        return expired;
+    }
+
+    std::size_t forget_ended(std::size_t most) override
+    {
+        const std::lock_guard lock(mutex_);
+        return jobs_.forget_ended(most);
+    }
+
+    std::uint64_t stored_bytes() override
+    {
+        const std::lock_guard lock(mutex_);
+        return jobs_.bytes();
+    }
+
+    std::vector<std::string> assets_in_use() override
+    {
+        const std::lock_guard lock(mutex_);
+        return jobs_.assets_in_use();
+    }
+
+    std::vector<std::string> pictures() override
+    {
+        const std::lock_guard lock(mutex_);
+        return jobs_.pictures();
+    }
+
+    bool shows(const std::string& image_digest) override
+    {
+        const std::vector<std::string> shown = pictures();
+        return std::find(shown.begin(), shown.end(), image_digest) != shown.end();
     }
 
     void wait_work(std::chrono::milliseconds timeout, std::stop_token stop) override

@@ -25,6 +25,7 @@ public:
     CommitCounts commit_counts() const override { return writer_.counts(); }
     Submitted submit(const SubmitRequest& request) override;
     std::optional<JobRecord> get(const Tenant& tenant, const JobId& id) override;
+    std::optional<JobRecord> find(const Tenant& tenant, const JobId& id) override;
     ListPage list(const ListQuery& query) override;
     QueueDepth depth() override { return readers_.read(read_depth); }
     bool storage_full() override;
@@ -34,15 +35,23 @@ public:
     std::size_t renew(const std::vector<Lease>& leases, std::chrono::milliseconds ttl) override;
     bool complete(const Lease& lease, const JobResult& result, std::int64_t now_ms, bool reused) override;
     bool complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms) override;
+    std::optional<std::string> find_picture(const Tenant& tenant, const std::string& render_key) override;
     std::optional<JobResult> find_result(const Tenant& tenant, const std::string& render_key) override;
     void release(const std::vector<Lease>& leases) override;
-    bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) override;
+    bool fail(const Lease& lease, const JobFailure& why, bool retry, std::int64_t now_ms) override;
     bool confirm_cancel(const Lease& lease, std::int64_t now_ms) override;
     std::optional<JobRecord> cancel(const Tenant& tenant, const JobId& id, std::int64_t now_ms) override;
     bool render_again(const Tenant& tenant, const JobId& id, const std::string& image_digest) override;
     bool remove(const Tenant& tenant, const JobId& id) override;
     std::size_t sweep(std::int64_t before_ms) override;
-    std::vector<std::string> referenced_digests() override { return readers_.read(read_referenced_digests); }
+    std::uint64_t newest() override { return static_cast<std::uint64_t>(readers_.read(newest_sequence)); }
+    std::vector<std::string> expire_results(const std::vector<std::string>& image_digests,
+                                            std::uint64_t newest) override;
+    std::size_t forget_ended(std::size_t most) override;
+    std::uint64_t stored_bytes() override { return readers_.read(used_bytes); }
+    std::vector<std::string> assets_in_use() override { return readers_.read(read_assets_in_use); }
+    std::vector<std::string> pictures() override { return readers_.read(read_pictures); }
+    bool shows(const std::string& image_digest) override;
     void wait_work(std::chrono::milliseconds timeout, std::stop_token stop) override;
 
 private:
@@ -71,16 +80,16 @@ Submitted submit_in(SqliteConnection& db, const SubmitRequest& request)
     const bool keyed = !request.idempotency_key.empty();
     if (const auto key = keyed ? read_key(db, request.tenant, request.idempotency_key) : std::nullopt) {
         if (key->body_digest != request.body_digest) return {SubmitStatus::key_reused, {}};
-        return {SubmitStatus::replayed, read_job(db, key->sequence)->record};
+        return {SubmitStatus::replayed, read_short_job(db, key->sequence)->record};
     }
-    std::optional<JobResult> result;
-    if (request.allow_reuse) result = read_reusable(db, request.tenant, request.spec.render_key);
-    if (!result && request.queue_limit != 0 && read_depth(db).queued >= request.queue_limit)
+    std::optional<std::int64_t> twin;
+    if (request.allow_reuse) twin = find_reusable(db, request.tenant, request.spec.render_key);
+    if (!twin && request.queue_limit != 0 && read_depth(db).queued >= request.queue_limit)
         return {SubmitStatus::queue_full, {}};
 
-    JobRecord job = job_of(request, std::move(result));
+    JobRecord job = job_of(request, twin ? std::optional(read_short_result(db, *twin)) : std::nullopt);
     const std::int64_t sequence = insert_job(db, job);
-    if (job.result) insert_result(db, sequence, *job.result);
+    if (twin) copy_result(db, *twin, sequence);
     if (keyed) insert_key(db, request, sequence);
     return {SubmitStatus::accepted, std::move(job)};
 }
@@ -97,6 +106,14 @@ Submitted Embedded::submit(const SubmitRequest& request)
 std::optional<JobRecord> Embedded::get(const Tenant& tenant, const JobId& id)
 {
     std::optional<JobRow> job = readers_.read([&](SqliteConnection& db) { return read_job(db, tenant, id); });
+    if (!job) return std::nullopt;
+    return std::move(job->record);
+}
+
+std::optional<JobRecord> Embedded::find(const Tenant& tenant, const JobId& id)
+{
+    std::optional<JobRow> job =
+        readers_.read([&](SqliteConnection& db) { return read_short_job(db, tenant, id); });
     if (!job) return std::nullopt;
     return std::move(job->record);
 }
@@ -207,7 +224,20 @@ bool Embedded::complete_queued(const JobId& id, const JobResult& result, std::in
 
 std::optional<JobResult> Embedded::find_result(const Tenant& tenant, const std::string& render_key)
 {
-    return readers_.read([&](SqliteConnection& db) { return read_reusable(db, tenant, render_key); });
+    return readers_.read([&](SqliteConnection& db) -> std::optional<JobResult> {
+        const std::optional<std::int64_t> job = find_reusable(db, tenant, render_key);
+        if (!job) return std::nullopt;
+        return read_result(db, *job);
+    });
+}
+
+std::optional<std::string> Embedded::find_picture(const Tenant& tenant, const std::string& render_key)
+{
+    return readers_.read([&](SqliteConnection& db) -> std::optional<std::string> {
+        const std::optional<std::int64_t> job = find_reusable(db, tenant, render_key);
+        if (!job) return std::nullopt;
+        return read_short_result(db, *job).image_digest;
+    });
 }
 
 void Embedded::release(const std::vector<Lease>& leases)
@@ -219,11 +249,11 @@ void Embedded::release(const std::vector<Lease>& leases)
         });
 }
 
-bool Embedded::fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms)
+bool Embedded::fail(const Lease& lease, const JobFailure& why, bool retry, std::int64_t now_ms)
 {
     return leave(lease, now_ms, [&](SqliteConnection& db, const JobHead& job) {
         const StoredState state = state_when_failed(retry, job.cancel_requested, job.attempts);
-        if (state == StoredState::failed) set_error(db, job.sequence, error_json);
+        if (state == StoredState::failed) set_failure(db, job.sequence, why);
         return state;
     });
 }
@@ -240,14 +270,14 @@ std::optional<JobRecord> Embedded::cancel(const Tenant& tenant, const JobId& id,
         if (!job) return std::nullopt;
         if (!is_final(job->state)) request_cancel(db, job->sequence);
         if (job->state == StoredState::queued) set_state(db, job->sequence, StoredState::canceled, now_ms);
-        return std::move(read_job(db, job->sequence)->record);
+        return std::move(read_short_job(db, job->sequence)->record);
     });
 }
 
 bool Embedded::render_again(const Tenant& tenant, const JobId& id, const std::string& image_digest)
 {
     const bool waits = write(Durability::written, [&](SqliteConnection& db) {
-        const std::optional<JobRow> job = read_job(db, tenant, id);
+        const std::optional<JobRow> job = read_short_job(db, tenant, id);
         if (!job || job->record.state != StoredState::succeeded ||
             job->record.result->image_digest != image_digest)
             return false;
@@ -274,6 +304,27 @@ std::size_t Embedded::sweep(std::int64_t before_ms)
         delete_keys(db, clock_.wall_ms() - kIdempotencyKept_ms);
         return expire_jobs(db, before_ms);
     });
+}
+
+std::vector<std::string> Embedded::expire_results(const std::vector<std::string>& image_digests,
+                                                  std::uint64_t newest)
+{
+    return write(Durability::synced, [&](SqliteConnection& db) {
+        std::vector<std::string> expired;
+        for (const std::string& digest : image_digests)
+            if (expire_picture(db, digest, static_cast<std::int64_t>(newest))) expired.push_back(digest);
+        return expired;
+    });
+}
+
+std::size_t Embedded::forget_ended(std::size_t most)
+{
+    return write(Durability::synced, [&](SqliteConnection& db) { return server::forget_ended(db, most); });
+}
+
+bool Embedded::shows(const std::string& image_digest)
+{
+    return readers_.read([&](SqliteConnection& db) { return shows_picture(db, image_digest); });
 }
 
 void Embedded::wait_work(std::chrono::milliseconds timeout, std::stop_token stop)

@@ -1,7 +1,28 @@
+#include "server/store/blob_store.h"
 #include "server/store/sqlite_jobs.h"
+#include "server/store/sqlite_states.h"
 #include "server/store/store_rules.h"
 
 namespace server {
+
+namespace {
+
+// The number of the text, which is new or another job's too. The triggers count who has it.
+std::int64_t keep_text(SqliteConnection& db, const std::string& text)
+{
+    const std::string digest = digest_of(std::string_view(text));
+    {
+        SqliteStatement known = db.prepare("SELECT id FROM texts WHERE digest = ?1");
+        known.bind(digest);
+        if (known.step()) return known.integer(0);
+    }
+    db.prepare("INSERT INTO texts(digest) VALUES (?1)").bind(digest).run();
+    const std::int64_t id = db.last_row();
+    db.prepare("INSERT INTO text_bodies(text, body) VALUES (?1, ?2)").bind(id, text).run();
+    return id;
+}
+
+} // namespace
 
 std::int64_t insert_job(SqliteConnection& db, const JobRecord& job)
 {
@@ -19,8 +40,8 @@ std::int64_t insert_job(SqliteConnection& db, const JobRecord& job)
               std::int64_t{job.spec.no_cache})
         .run();
     const std::int64_t sequence = db.last_row();
-    db.prepare("INSERT INTO requests(job, request_json) VALUES (?1, ?2)")
-        .bind(sequence, job.spec.request_json)
+    db.prepare("INSERT INTO requests(job, request) VALUES (?1, ?2)")
+        .bind(sequence, keep_text(db, job.spec.request_json))
         .run();
     for (const auto& [name, value] : job.spec.labels)
         db.prepare("INSERT INTO labels(job, name, value) VALUES (?1, ?2, ?3)")
@@ -44,14 +65,23 @@ void insert_key(SqliteConnection& db, const SubmitRequest& request, std::int64_t
 
 void insert_result(SqliteConnection& db, std::int64_t sequence, const JobResult& result)
 {
-    db.prepare("INSERT INTO results(job, image_digest, samples, reusable, report_json, scene_json) "
+    const std::int64_t report = keep_text(db, result.report_json), scene = keep_text(db, result.scene_json);
+    db.prepare("INSERT INTO results(job, image_digest, samples, reusable, report, scene) "
                "VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
         .bind(sequence,
               result.image_digest,
               std::int64_t{result.samples},
               std::int64_t{result.reusable},
-              result.report_json,
-              result.scene_json)
+              report,
+              scene)
+        .run();
+}
+
+void copy_result(SqliteConnection& db, std::int64_t from, std::int64_t to)
+{
+    db.prepare("INSERT INTO results(job, image_digest, samples, reusable, report, scene) "
+               "SELECT ?2, image_digest, samples, reusable, report, scene FROM results WHERE job = ?1")
+        .bind(from, to)
         .run();
 }
 
@@ -59,15 +89,18 @@ void set_state(SqliteConnection& db, std::int64_t sequence, StoredState state, s
 {
     std::optional<std::int64_t> finished_ms;
     if (is_final(state)) finished_ms = now_ms;
-    db.prepare("UPDATE jobs SET state = ?2, finished_ms = ?3, started_ms = iif(?2 = 0, NULL, started_ms) "
-               "WHERE seq = ?1")
+    db.prepare("UPDATE jobs SET state = ?2, finished_ms = ?3, started_ms = iif(?2 = " + kQueued +
+               ", NULL, started_ms) WHERE seq = ?1")
         .bind(sequence, static_cast<std::int64_t>(state), finished_ms)
         .run();
 }
 
-void set_error(SqliteConnection& db, std::int64_t sequence, const std::string& error_json)
+void set_failure(SqliteConnection& db, std::int64_t sequence, const JobFailure& why)
 {
-    db.prepare("UPDATE jobs SET error_json = ?2 WHERE seq = ?1").bind(sequence, error_json).run();
+    db.prepare("UPDATE jobs SET failure_json = ?2 WHERE seq = ?1").bind(sequence, why.summary_json).run();
+    db.prepare("INSERT INTO failures(job, whole) VALUES (?1, ?2)")
+        .bind(sequence, keep_text(db, why.whole_json))
+        .run();
 }
 
 void set_reused(SqliteConnection& db, std::int64_t sequence)
@@ -87,9 +120,10 @@ void uncount_attempt(SqliteConnection& db, std::int64_t sequence)
 
 std::optional<Lease> lease_next(SqliteConnection& db, std::int64_t now_ms)
 {
-    SqliteStatement row = db.prepare(
-        "UPDATE jobs SET state = 1, epoch = epoch + 1, attempts = attempts + 1, started_ms = ?1 WHERE seq = "
-        "(SELECT seq FROM jobs WHERE state = 0 ORDER BY priority DESC, seq LIMIT 1) RETURNING id, epoch");
+    SqliteStatement row = db.prepare("UPDATE jobs SET state = " + kLeased +
+                                     ", epoch = epoch + 1, attempts = attempts + 1, started_ms = ?1 WHERE "
+                                     "seq = (SELECT seq FROM jobs WHERE state = " +
+                                     kQueued + " ORDER BY priority DESC, seq LIMIT 1) RETURNING id, epoch");
     row.bind(now_ms);
     if (!row.step()) return std::nullopt;
     Lease lease{.job = row.text(0), .epoch = static_cast<std::uint64_t>(row.integer(1))};
@@ -100,8 +134,8 @@ std::optional<Lease> lease_next(SqliteConnection& db, std::int64_t now_ms)
 void reset_job(SqliteConnection& db, std::int64_t sequence)
 {
     db.prepare("DELETE FROM results WHERE job = ?1").bind(sequence).run();
-    db.prepare("UPDATE jobs SET state = 0, attempts = 0, reused = 0, started_ms = NULL, finished_ms = NULL "
-               "WHERE seq = ?1")
+    db.prepare("UPDATE jobs SET state = " + kQueued +
+               ", attempts = 0, reused = 0, started_ms = NULL, finished_ms = NULL WHERE seq = ?1")
         .bind(sequence)
         .run();
 }
@@ -118,10 +152,36 @@ std::size_t expire_jobs(SqliteConnection& db, std::int64_t before_ms)
     db.prepare("DELETE FROM results WHERE job IN (SELECT seq FROM jobs WHERE finished_ms < ?1)")
         .bind(before_ms)
         .run();
-    db.prepare("UPDATE jobs SET state = 5 WHERE finished_ms < ?1 AND state IN (2, 3, 4)")
+    db.prepare("UPDATE jobs SET state = " + kExpired + " WHERE finished_ms < ?1 AND state IN (" + kEnded +
+               ")")
         .bind(before_ms)
         .run();
     return static_cast<std::size_t>(forgotten + db.changes());
+}
+
+bool expire_picture(SqliteConnection& db, const std::string& image_digest, std::int64_t newest)
+{
+    {
+        SqliteStatement later =
+            db.prepare("SELECT 1 FROM results WHERE image_digest = ?1 AND job > ?2 LIMIT 1");
+        later.bind(image_digest, newest);
+        if (later.step()) return false;
+    }
+    db.prepare("UPDATE jobs SET state = " + kExpired +
+               " WHERE seq IN (SELECT job FROM results WHERE image_digest = ?1)")
+        .bind(image_digest)
+        .run();
+    db.prepare("DELETE FROM results WHERE image_digest = ?1").bind(image_digest).run();
+    return true;
+}
+
+std::size_t forget_ended(SqliteConnection& db, std::size_t most)
+{
+    db.prepare("DELETE FROM jobs WHERE seq IN (SELECT seq FROM jobs WHERE state IN (" + kWithoutResult +
+               ") ORDER BY finished_ms LIMIT ?1)")
+        .bind(static_cast<std::int64_t>(most))
+        .run();
+    return static_cast<std::size_t>(db.changes());
 }
 
 void delete_keys(SqliteConnection& db, std::int64_t before_ms)

@@ -1,10 +1,10 @@
 // Store: where jobs live. A durable, fenced queue: SqliteStore for a node, MemStore for tests; one
 // conformance suite.
 //
-// Durability  submit(), cancel(), remove() and sweep() outlast a power cut when they return. What workers do
-//             (claim, complete, release, fail, confirm_cancel, render_again) outlasts the death of the process, and a power
-//             cut a little later: a lost result renders again to the same bytes. Everyone reads what was
-//             written.
+// Durability  submit(), cancel(), remove(), sweep(), expire_results() and forget_ended() outlast a power cut when
+//             they return. What workers do (claim, complete, release, fail, confirm_cancel, render_again)
+//             outlasts the death of the process, and a power cut a little later: a lost result renders again to
+//             the same bytes. Everyone reads what was written.
 // Fencing     claim() raises a job's epoch; complete(), fail(), release() and renew() with an older epoch do
 //             nothing and say so. A lease that ran out is still its owner's until another claim takes the
 //             job.
@@ -16,6 +16,8 @@
 //             release(), a restart, a lease that ran out, fail() with `retry`, even complete(), whose result
 //             is not kept.
 // Threads     every function may be called from any thread.
+// Texts       requests, reports, scenes and errors are kept once, however many jobs have the same; only whom it
+//             concerns reads them.
 // Errors      the world's failures (disk full, corrupt file) throw StoreError; everything else is a value.
 #pragma once
 
@@ -43,7 +45,7 @@ struct StoreError : std::runtime_error {
 using JobId = std::string;  // 128 random bits, 32 hex digits
 using Tenant = std::string; // "" until keys exist
 
-// Stored states; `preparing`, `running` and `canceling` are told apart by the job service, in memory.
+// Stored states, as numbers on disk; `preparing`, `running` and `canceling` are told apart by the job service, in memory.
 enum class StoredState : std::uint8_t { queued, leased, succeeded, failed, canceled, expired };
 
 // Everything a job is, as the client gave it. Opaque text to the store.
@@ -65,6 +67,13 @@ struct JobResult {
     friend bool operator==(const JobResult&, const JobResult&) = default;
 };
 
+// Why a job failed: api::write_problem, without the list of faults and with it.
+struct JobFailure {
+    std::string summary_json;
+    std::string whole_json;
+    friend bool operator==(const JobFailure&, const JobFailure&) = default;
+};
+
 struct JobRecord {
     JobId id;
     Tenant tenant;
@@ -78,7 +87,7 @@ struct JobRecord {
     std::optional<std::int64_t> started_ms; // of the present or last attempt; none while queued
     std::optional<std::int64_t> finished_ms;
     std::optional<JobResult> result;
-    std::string error_json; // api::write_problem of the failure
+    JobFailure failure; // when failed
 };
 
 // A run of work units of one pass of a job. One node renders whole jobs: pass 0, first 0, count 0 means all.
@@ -105,7 +114,7 @@ enum class SubmitStatus : std::uint8_t { accepted, replayed, key_reused, queue_f
 
 struct Submitted {
     SubmitStatus status = SubmitStatus::accepted;
-    JobRecord job; // the new or the replayed one; unset for key_reused and queue_full
+    JobRecord job; // the new or the replayed one, as find() gives it at least; unset for the other two
 };
 
 struct ListQuery {
@@ -142,7 +151,9 @@ public:
 
     virtual Submitted submit(const SubmitRequest& request) = 0;
     virtual std::optional<JobRecord> get(const Tenant& tenant, const JobId& id) = 0;
-    // Without the long texts (request_json, report_json, scene_json), which are empty.
+    // Without request_json, report_json, scene_json and asset_digests, which are empty: what a status shows.
+    virtual std::optional<JobRecord> find(const Tenant& tenant, const JobId& id) = 0;
+    // As find() gives them, and without failure.whole_json.
     virtual ListPage list(const ListQuery& query) = 0;
     virtual QueueDepth depth() = 0;
     // True from a write that found the disk full until one works again. As long as it is so, asking tries a
@@ -163,12 +174,13 @@ public:
     // being claimed. False if it is not queued.
     virtual bool complete_queued(const JobId& id, const JobResult& result, std::int64_t now_ms) = 0;
     // The result that a succeeded job with this render_key has, the newest such job's; what submit() would
-    // reuse.
+    // reuse. Its picture alone; the whole.
+    virtual std::optional<std::string> find_picture(const Tenant& tenant, const std::string& render_key) = 0;
     virtual std::optional<JobResult> find_result(const Tenant& tenant, const std::string& render_key) = 0;
     virtual void
     release(const std::vector<Lease>& leases) = 0; // drain: claimable at once, attempt not counted
     // retry: back to the queue unless it was tried 5 times; else failed. False: fenced.
-    virtual bool fail(const Lease& lease, const std::string& error_json, bool retry, std::int64_t now_ms) = 0;
+    virtual bool fail(const Lease& lease, const JobFailure& why, bool retry, std::int64_t now_ms) = 0;
     // The worker's answer to cancel_requested: the job is canceled. False: fenced.
     virtual bool confirm_cancel(const Lease& lease, std::int64_t now_ms) = 0;
 
@@ -184,8 +196,21 @@ public:
     // Jobs that were final before `before_ms` become expired (result dropped), those that were so a week
     // before it are forgotten, and idempotency keys older than 24 h. The number of jobs expired or forgotten.
     virtual std::size_t sweep(std::int64_t before_ms) = 0;
-    // Digests that a job not final, or a kept result, still needs.
-    virtual std::vector<std::string> referenced_digests() = 0;
+    // A moment in the order of submission.
+    virtual std::uint64_t newest() = 0;
+    // Jobs that succeeded with one of these pictures become expired, unless one of them was submitted after
+    // `newest`: then all of that picture stay. The pictures whose jobs expired, or that no job had.
+    virtual std::vector<std::string> expire_results(const std::vector<std::string>& image_digests,
+                                                    std::uint64_t newest) = 0;
+    // Forgets final jobs that have no result, those that ended first, at most so many. How many.
+    virtual std::size_t forget_ended(std::size_t most) = 0;
+    // What the jobs take on disk, free space within files not counted.
+    virtual std::uint64_t stored_bytes() = 0;
+    // Assets that a job not final still needs.
+    virtual std::vector<std::string> assets_in_use() = 0;
+    // Pictures of kept results.
+    virtual std::vector<std::string> pictures() = 0;
+    virtual bool shows(const std::string& image_digest) = 0; // whether it is one of them
     // Returns at the latest after `timeout`, or as soon as something may be claimed
     // or `stop` is requested.
     virtual void wait_work(std::chrono::milliseconds timeout, std::stop_token stop) = 0;

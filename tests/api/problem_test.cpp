@@ -3,6 +3,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+
 namespace {
 
 using api::Problem;
@@ -66,6 +73,31 @@ TEST(ProblemDetails, HaveATitleForEveryCode)
     EXPECT_EQ(title_of("queue_full"), "Queue is full");
     EXPECT_EQ(title_of("import_crashed"), "Import crashed") << "codes outside the table read as words";
     EXPECT_EQ(title_of(""), "Error");
+}
+
+// "413, "over_limit"" in the sources is an answer with that code.
+std::set<std::string> codes_in_the_sources()
+{
+    static const std::regex answer(R"re(\b[45]\d\d,\s*"([a-z_]+)")re");
+    std::set<std::string> codes;
+    for (const char* top : {"server", "api"})
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(
+                 std::filesystem::path(HELIOGRAPH_SOURCE_DIR) / top)) {
+            if (entry.path().extension() != ".cpp") continue;
+            std::ifstream file(entry.path());
+            const std::string text{std::istreambuf_iterator<char>(file), {}};
+            for (std::sregex_iterator found(text.begin(), text.end(), answer), end; found != end; ++found)
+                codes.insert((*found)[1]);
+        }
+    return codes;
+}
+
+TEST(ProblemDetails, HaveEachTheirCodeInTheTableOfTitles)
+{
+    const std::set<std::string> codes = codes_in_the_sources();
+    EXPECT_GT(codes.size(), 20U);
+    for (const std::string& code : codes)
+        EXPECT_TRUE(api::has_title(code)) << code << " is told, and api/problem.cpp has no title for it";
 }
 
 TEST(ProblemDetails, SurviveBytesThatAreNotUtf8)

@@ -47,6 +47,26 @@ TEST(Assets, PutIsIdempotent)
     EXPECT_EQ(put(service, path_of(kBytes), kBytes).status, 200);
 }
 
+TEST(Assets, AreMendedByPuttingThemAgainWhenTheDiskDamagedThem)
+{
+    const LiveService service;
+    put(service, path_of(kBytes), kBytes);
+    {
+        std::fstream file(service.blobs.path(server::BlobStore::Kind::asset, server::digest_of(kBytes)),
+                          std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(2);
+        file.put('1'); // a bit of '0'
+    }
+    const auto damaged = service.get(path_of(kBytes));
+    EXPECT_EQ(damaged.status, 500);
+    EXPECT_EQ(code_of(damaged), "asset_damaged");
+    EXPECT_NE(json_of(damaged).at("detail").get<std::string>().find("PUT " + path_of(kBytes)),
+              std::string::npos);
+    EXPECT_EQ(put(service, path_of(kBytes), kBytes).status, 201);
+    EXPECT_EQ(service.get(path_of(kBytes)).body, kBytes);
+    EXPECT_EQ(put(service, path_of(kBytes), kBytes).status, 200);
+}
+
 TEST(Assets, PutRefusesBytesOfAnotherDigest)
 {
     const LiveService service;
@@ -138,7 +158,7 @@ TEST(Assets, AreBrokenOffBeforeTheFirstByteThatIsDamaged)
     connection.send("GET " + path + " HTTP/1.1\r\nHost: a\r\n\r\n");
     EXPECT_THROW(connection.read(), std::runtime_error); // told its length, and ended early
     EXPECT_TRUE(connection.wait_closed());
-    EXPECT_EQ(code_of(service.get(path)), "internal"); // known now, before there is a head
+    EXPECT_EQ(code_of(service.get(path)), "asset_damaged"); // known now, before there is a head
     EXPECT_EQ(fetch(service.http.port(), "HEAD", path).status, 404);
     EXPECT_EQ(put(service, path, big).status, 201);
     EXPECT_TRUE(service.get(path).body == big);
@@ -155,7 +175,7 @@ TEST(Assets, AreRefusedInPartWhereThePartIsDamaged)
     EXPECT_EQ(service.get(path, {{"Range", "bytes=1-5"}}).body, "xxxxx");
     const std::string around =
         std::to_string(server::kBlobPiece + 5) + "-" + std::to_string(2 * server::kBlobPiece);
-    EXPECT_EQ(code_of(service.get(path, {{"Range", "bytes=" + around}})), "internal");
+    EXPECT_EQ(code_of(service.get(path, {{"Range", "bytes=" + around}})), "asset_damaged");
 }
 
 std::uint64_t peak_memory_kib()

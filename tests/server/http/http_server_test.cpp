@@ -95,7 +95,7 @@ TEST(HttpServer, RefusesJsonThatIsTooDeepTooLongOrNone)
               422);
 
     const auto large = service.submit(std::string((1u << 20) + 1, ' '));
-    EXPECT_EQ(code_of(large), "too_large");
+    EXPECT_EQ(code_of(large), "over_limit");
     for (const char* word : {"json_bytes", "1048576", "--limit-json-bytes"})
         EXPECT_NE(large.body.find(word), std::string::npos) << large.body;
     EXPECT_TRUE(service.alive());
@@ -111,7 +111,7 @@ TEST(HttpServer, CountsChunkedJsonAgainstItsLimit)
     }
     const auto answer = connection.read();
     ASSERT_TRUE(answer);
-    EXPECT_EQ(code_of(*answer), "too_large");
+    EXPECT_EQ(code_of(*answer), "over_limit");
     EXPECT_TRUE(service.alive());
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <set>
 #include <string>
@@ -192,10 +193,10 @@ TEST(Jobs, AsABrokenFormAreRefusedWithWhatIsWrong)
     for (const char* name : {"", "../a.obj", "/etc/passwd", "a/../b", "a\\b", "a%0Ab", ".", "a//b"})
         EXPECT_EQ(code_of(send({{"scene", quick_job()}, {name, "x"}})), "invalid_form") << name;
     EXPECT_EQ(code_of(send({{"scene", quick_job()}, {std::string(300, 'a'), "x"}})), "invalid_form");
-    EXPECT_EQ(code_of(send({{"scene", std::string(501, ' ')}})), "too_large");
+    EXPECT_EQ(code_of(send({{"scene", std::string(501, ' ')}})), "over_limit");
     EXPECT_EQ(
         code_of(send({{"a", std::string(600, 'x')}, {"b", std::string(600, 'y')}, {"scene", quick_job()}})),
-        "too_large");
+        "over_limit");
     EXPECT_EQ(code_of(service.post("/v1/jobs", "--b", {{"Content-Type", "multipart/form-data"}})),
               "bad_request");
     EXPECT_EQ(code_of(service.post("/v1/jobs",
@@ -347,6 +348,27 @@ TEST(Jobs, OfNoOneAreNotFound)
         for (const char* below : {"", "/image", "/report", "/scene"})
             EXPECT_EQ(code_of(service.get(std::string("/v1/jobs/") + id + below)), "not_found")
                 << id << below;
+}
+
+TEST(Jobs, GiveThePictureInTheFormatsThatCapabilitiesNameAndInNoOther)
+{
+    const LiveService service;
+    const std::string image = "/v1/jobs/" + service.finish(tests::quick_job()) + "/image";
+    const auto named = json_of(service.get("/v1/capabilities")).at("formats").at("images");
+    ASSERT_FALSE(named.empty());
+    for (const char* type : {"image/png",
+                             "image/jpeg",
+                             "image/vnd.radiance",
+                             "image/x-exr",
+                             "image/x-portable-floatmap",
+                             "image/webp"}) {
+        const bool built = std::find(named.begin(), named.end(), type) != named.end();
+        const auto answer = service.get(image, {{"Accept", type}});
+        EXPECT_EQ(answer.status, built ? 200 : 406) << type;
+        EXPECT_EQ(answer.header("content-type"), built ? type : std::string("application/problem+json"));
+    }
+    for (const auto& type : named) // none that this test does not know
+        EXPECT_EQ(service.get(image, {{"Accept", type.get<std::string>()}}).header("content-type"), type);
 }
 
 } // namespace

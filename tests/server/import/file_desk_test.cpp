@@ -12,11 +12,11 @@
 
 namespace {
 
-using server::OwnedFd;
+using server::FileDescriptor;
 
-OwnedFd file_with(const std::string& text)
+FileDescriptor file_with(const std::string& text)
 {
-    OwnedFd file(::memfd_create("file", MFD_CLOEXEC));
+    FileDescriptor file(::memfd_create("file", MFD_CLOEXEC));
     EXPECT_EQ(::write(file.get(), text.data(), text.size()), static_cast<ssize_t>(text.size()));
     return file;
 }
@@ -26,7 +26,7 @@ void serve(int desk, std::string& asked)
 {
     const auto open = [&](std::string_view name) {
         asked = name;
-        return name == "there.mtl" ? file_with("newmtl a") : OwnedFd();
+        return name == "there.mtl" ? file_with("newmtl a") : FileDescriptor();
     };
     do {
         pollfd polled{desk, POLLIN, 0};
@@ -40,7 +40,7 @@ TEST(FileDesk, HandsOutTheFilesThatAreThereAndNothingElse)
     const int desk = service.get();
     std::string asked;
     std::thread server_side([desk, &asked] { serve(desk, asked); });
-    const OwnedFd file = server::ask_for_file(importer.get(), "there.mtl");
+    const FileDescriptor file = server::ask_for_file(importer.get(), "there.mtl");
     ASSERT_TRUE(file);
     EXPECT_TRUE(::fcntl(file.get(), F_GETFD) & FD_CLOEXEC);
     char text[16]{};

@@ -151,11 +151,16 @@ TEST_F(ImportServiceTest, NeverServesADamagedBlob)
         file.put('9');
     };
     damage(mtl);
-    EXPECT_THROW(imports_.import({"a.obj", mesh, {{"m.mtl", mtl}}}, pool_, {}), server::StoreError);
+    const auto failure =
+        std::get<server::ImportFailure>(imports_.import({"a.obj", mesh, {{"m.mtl", mtl}}}, pool_, {}));
+    EXPECT_EQ(failure.code, "asset_damaged");
+    EXPECT_NE(failure.detail.find("PUT /v1/assets/" + mtl), std::string::npos) << failure.detail;
     const std::string other = put("v 5 5 5\n" + kTriangle);
     damage(other);
-    EXPECT_THROW(imports_.import({"a.obj", other, {}}, pool_, {}), server::StoreError);
+    EXPECT_EQ(code({"a.obj", other, {}}), "asset_damaged");
     EXPECT_EQ(imports_.cached_bytes(), 0u);
+    put("v 5 5 5\n" + kTriangle); // mends it, and the failure was not remembered
+    EXPECT_EQ(code({"a.obj", other, {}}), "ok");
 }
 
 TEST_F(ImportServiceTest, StopsWhenAskedAndImportsTheNextTime)

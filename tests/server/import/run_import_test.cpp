@@ -18,29 +18,29 @@
 namespace {
 
 namespace fs = std::filesystem;
+using server::FileDescriptor;
 using server::ImportedAsset;
 using server::ImportFailure;
-using server::OwnedFd;
 
 const fs::path kImporter = fs::path(tests::bin_dir()) / "heliograph-import";
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 class RunImport : public testing::Test {
 protected:
-    OwnedFd file(const std::string& bytes)
+    FileDescriptor file(const std::string& bytes)
     {
-        return OwnedFd(::open(folder_.write("file", bytes).c_str(), O_RDONLY | O_CLOEXEC));
+        return FileDescriptor(::open(folder_.write("file", bytes).c_str(), O_RDONLY | O_CLOEXEC));
     }
 
     server::ImportRunEnd
     run(const std::string& bytes, const std::string& extension = "", std::stop_token stop = {})
     {
-        const OwnedFd main = file(bytes);
+        const FileDescriptor main = file(bytes);
         const auto open = [this](std::string_view name) {
             asked_.emplace_back(name);
             const auto companion = companions_.find(std::string(name));
-            if (companion == companions_.end()) return OwnedFd();
-            return OwnedFd(
+            if (companion == companions_.end()) return FileDescriptor();
+            return FileDescriptor(
                 ::open(folder_.write("companion", companion->second).c_str(), O_RDONLY | O_CLOEXEC));
         };
         return server::run_import({program_, main.get(), extension, open, limits_}, stop);
@@ -202,7 +202,7 @@ TEST_F(RunImport, StopsWhenAsked)
 TEST_F(RunImport, GivesTheChildNothingButWhatItNeeds)
 {
     ::setenv("HELIOGRAPH_TEST_SECRET", "secret", 1);
-    const OwnedFd leaky(::open("/dev/null", O_RDONLY)); // without O_CLOEXEC, as a library might
+    const FileDescriptor leaky(::open("/dev/null", O_RDONLY)); // without O_CLOEXEC, as a library might
     misbehave("ls -l /proc/self/fd >&2; /usr/bin/env >&2; exit 7");
     const auto end = run(kTriangle);
     EXPECT_THAT(end.log, testing::Not(testing::HasSubstr("secret")));

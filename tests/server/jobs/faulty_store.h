@@ -32,11 +32,13 @@ public:
     }
     std::optional<server::JobRecord> get(const server::Tenant& tenant, const server::JobId& id) override
     {
-        int left = faults_.lost_reads;
-        while (left > 0 && !faults_.lost_reads.compare_exchange_weak(left, left - 1)) {
-        }
-        if (left > 0) throw server::StoreError("unreadable, says the test", false);
+        lose_reads();
         return real_->get(tenant, id);
+    }
+    std::optional<server::JobRecord> find(const server::Tenant& tenant, const server::JobId& id) override
+    {
+        lose_reads();
+        return real_->find(tenant, id);
     }
     server::ListPage list(const server::ListQuery& query) override { return real_->list(query); }
     server::QueueDepth depth() override { return real_->depth(); }
@@ -76,14 +78,19 @@ public:
     {
         return real_->find_result(tenant, key);
     }
+    std::optional<std::string> find_picture(const server::Tenant& tenant, const std::string& key) override
+    {
+        return real_->find_picture(tenant, key);
+    }
     // A node that dies releases nothing.
     void release(const std::vector<server::Lease>& leases) override
     {
         if (!faults_.no_results) real_->release(leases);
     }
-    bool fail(const server::Lease& lease, const std::string& error, bool retry, std::int64_t now_ms) override
+    bool
+    fail(const server::Lease& lease, const server::JobFailure& why, bool retry, std::int64_t now_ms) override
     {
-        return real_->fail(lease, error, retry, now_ms);
+        return real_->fail(lease, why, retry, now_ms);
     }
     bool confirm_cancel(const server::Lease& lease, std::int64_t now_ms) override
     {
@@ -105,13 +112,31 @@ public:
         return real_->remove(tenant, id);
     }
     std::size_t sweep(std::int64_t before_ms) override { return real_->sweep(before_ms); }
-    std::vector<std::string> referenced_digests() override { return real_->referenced_digests(); }
+    std::uint64_t newest() override { return real_->newest(); }
+    std::vector<std::string> expire_results(const std::vector<std::string>& digests,
+                                            std::uint64_t newest) override
+    {
+        return real_->expire_results(digests, newest);
+    }
+    std::size_t forget_ended(std::size_t most) override { return real_->forget_ended(most); }
+    std::uint64_t stored_bytes() override { return real_->stored_bytes(); }
+    std::vector<std::string> assets_in_use() override { return real_->assets_in_use(); }
+    std::vector<std::string> pictures() override { return real_->pictures(); }
+    bool shows(const std::string& image_digest) override { return real_->shows(image_digest); }
     void wait_work(std::chrono::milliseconds timeout, std::stop_token stop) override
     {
         real_->wait_work(timeout, std::move(stop));
     }
 
 private:
+    void lose_reads()
+    {
+        int left = faults_.lost_reads;
+        while (left > 0 && !faults_.lost_reads.compare_exchange_weak(left, left - 1)) {
+        }
+        if (left > 0) throw server::StoreError("unreadable, says the test", false);
+    }
+
     std::unique_ptr<server::Store> real_;
     DiskFaults& faults_;
 };

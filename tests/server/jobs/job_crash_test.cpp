@@ -80,17 +80,16 @@ TEST_P(JobCrash, ListsAJobUnderTheStateThatItIsSeenIn)
     tests::succeeded(*node, oldest);
     const std::string follower = tests::succeeded(*node, submit(*node, tests::quick_job()).id).id;
     faults.refused_results.wait(0); // the store still calls them leased and queued
-    const auto listed = [&](server::StoredState state, std::uint32_t limit = 50) {
-        return tests::expect<std::string>(
-            node->jobs.list({.tenant = {}, .state = state, .label = {}, .limit = limit, .cursor = {}}));
+    const auto listed = [&](JobState state, std::uint32_t limit = 50) {
+        return tests::expect<std::string>(node->jobs.list({.state = state, .limit = limit}));
     };
-    const std::string succeeded = listed(server::StoredState::succeeded);
+    const std::string succeeded = listed(JobState::succeeded);
     for (const std::string& job : {oldest, id, follower}) {
         EXPECT_NE(succeeded.find(job), std::string::npos) << succeeded;
-        for (const auto other : {server::StoredState::leased, server::StoredState::queued})
+        for (const auto other : {JobState::preparing, JobState::running, JobState::queued})
             EXPECT_EQ(listed(other).find(job), std::string::npos);
     }
-    const std::string page = listed(server::StoredState::succeeded, 2);
+    const std::string page = listed(JobState::succeeded, 2);
     EXPECT_NE(page.find(follower), std::string::npos) << "the newest first";
     EXPECT_EQ(page.find(oldest), std::string::npos) << page;
     EXPECT_NE(page.find("next_cursor"), std::string::npos) << page;

@@ -260,10 +260,32 @@ TEST_P(JobService, ListsJobsWithWhatOnlyMemoryKnows)
     node->jobs.start();
     const api::JobView job = submit(*node, tests::endless_job());
     tests::running(*node, job.id);
-    const std::string listed = tests::expect<std::string>(
-        node->jobs.list({.tenant = {}, .state = server::StoredState::leased, .label = {}, .cursor = {}}));
-    EXPECT_NE(listed.find(job.id), std::string::npos);
-    EXPECT_NE(listed.find("\"running\""), std::string::npos);
+    const std::string waiting = submit(*node, tests::quick_job()).id;
+    const auto listed = [&](JobState state) {
+        return tests::expect<std::string>(node->jobs.list({.state = state}));
+    };
+    for (const std::string& name : api::job_state_names()) {
+        const JobState state = *api::job_state_from_name(name);
+        EXPECT_EQ(listed(state).find(job.id) != std::string::npos, state == JobState::running) << name;
+        EXPECT_EQ(listed(state).find(waiting) != std::string::npos, state == JobState::queued) << name;
+    }
+}
+
+TEST_P(JobService, ListsAJobInPreparationAndOneThatIsBeingCanceledEachUnderItsState)
+{
+    const auto node = open(); // no worker: the test is it
+    const std::string id = submit(*node, tests::quick_job()).id;
+    ASSERT_EQ(node->store->claim("test", 1, std::chrono::hours(1)).size(), 1U);
+    const auto is_listed = [&](JobState state) {
+        return tests::expect<std::string>(node->jobs.list({.state = state})).find(id) != std::string::npos;
+    };
+    EXPECT_EQ(node->jobs.get(id)->state, JobState::preparing);
+    EXPECT_TRUE(is_listed(JobState::preparing));
+    EXPECT_FALSE(is_listed(JobState::running));
+    node->jobs.cancel(id);
+    EXPECT_EQ(node->jobs.get(id)->state, JobState::canceling);
+    EXPECT_TRUE(is_listed(JobState::canceling));
+    EXPECT_FALSE(is_listed(JobState::preparing));
 }
 
 TEST_P(JobService, RefusesJobsOnceItStopsAndAnswersWhoWaits)

@@ -196,16 +196,71 @@ TEST(BlobStore, MakesRoomByWhatWasUsedLongestAgo)
     EXPECT_EQ(blobs.list(Kind::asset),
               (std::vector<std::string>{digests[3], digests[0], digests[1], digests[2]}));
 
-    EXPECT_TRUE(blobs.make_room(4, 20, {}));
+    const auto keeping = [](std::vector<std::string> used) { return [used] { return used; }; };
+    const auto none = []() -> std::vector<std::string> {
+        ADD_FAILURE() << "who is in use matters only where something must go";
+        return {};
+    };
+    EXPECT_TRUE(blobs.make_room(4, 20, none));
     EXPECT_EQ(blobs.list(Kind::asset).size(), 4U) << "it fits already";
-    EXPECT_FALSE(blobs.make_room(9, 16, {digests[0], digests[1], digests[2]}));
-    EXPECT_FALSE(blobs.make_room(17, 16, {}));
+    EXPECT_FALSE(blobs.make_room(9, 16, keeping({digests[0], digests[1], digests[2]})));
+    EXPECT_FALSE(blobs.make_room(17, 16, none));
     EXPECT_EQ(blobs.list(Kind::asset).size(), 4U) << "what cannot help removes nothing";
-    EXPECT_TRUE(blobs.make_room(5, 16, {digests[3]}));
+    EXPECT_TRUE(blobs.make_room(5, 16, keeping({digests[3]})));
     EXPECT_EQ(blobs.list(Kind::asset), (std::vector<std::string>{digests[3], digests[2]}));
     EXPECT_EQ(blobs.total_bytes(Kind::asset), 8U);
-    EXPECT_TRUE(blobs.make_room(UINT64_MAX, UINT64_MAX, {}));
+    EXPECT_TRUE(blobs.make_room(UINT64_MAX, UINT64_MAX, keeping({})));
     EXPECT_TRUE(blobs.list(Kind::asset).empty());
+}
+
+TEST(BlobStore, IsMendedByWritingTheSameBytesAlsoWhereNobodyHadNoticed)
+{
+    for (const bool noticed : {false, true}) {
+        const TempFolder folder;
+        BlobStore blobs(folder.path());
+        blobs.put(Kind::asset, bytes_of("abc"));
+        {
+            std::fstream file(blobs.path(Kind::asset, kAbcDigest), std::ios::in | std::ios::out);
+            file.put('A' ^ 1);
+        }
+        if (noticed) {
+            EXPECT_THROW(blobs.open(Kind::asset, kAbcDigest), server::DamagedBlob);
+            EXPECT_FALSE(blobs.has(Kind::asset, kAbcDigest));
+        }
+        blobs.put(Kind::asset, bytes_of("abc"));
+        EXPECT_TRUE(blobs.has(Kind::asset, kAbcDigest));
+        EXPECT_EQ(text_of(blobs.read(Kind::asset, kAbcDigest)), "abc");
+        EXPECT_EQ(blobs.open(Kind::asset, kAbcDigest)->size(), 3U);
+    }
+}
+
+TEST(BlobStore, MakesManyBlobsDurableTogether)
+{
+    const TempFolder folder;
+    BlobStore blobs(folder.path());
+    std::vector<std::string> digests;
+    for (int i = 0; i < 20; ++i)
+        digests.push_back(blobs.put(Kind::asset, bytes_of(std::to_string(i)), false));
+    digests.push_back("sha256:" + std::string(64, '0')); // was removed meanwhile
+    blobs.make_durable(Kind::asset, digests);
+    blobs.make_durable(Kind::asset, {digests[0], digests.back()});
+    for (int i = 0; i < 20; ++i)
+        EXPECT_EQ(text_of(blobs.read(Kind::asset, digests[static_cast<std::size_t>(i)])), std::to_string(i));
+}
+
+TEST(BlobStore, RemovesWhatADeathLeftHalfRemoved)
+{
+    const TempFolder folder;
+    {
+        BlobStore blobs(folder.path());
+        blobs.put(Kind::asset, bytes_of("abc"));
+        // As remove() leaves it before it is unlinked.
+        std::filesystem::rename(blobs.path(Kind::asset, kAbcDigest),
+                                folder.path() / "assets" / ("incoming-" + std::string(kAbcDigest).substr(7)));
+    }
+    const BlobStore blobs(folder.path());
+    EXPECT_FALSE(blobs.has(Kind::asset, kAbcDigest));
+    EXPECT_EQ(files_below(folder.path()), 0U);
 }
 
 TEST(BlobStore, RemembersTheOrderOfUseOverARestart)

@@ -162,27 +162,106 @@ TEST(SqliteStore, RefusesADamagedFileByName)
     EXPECT_NE(refusal_of(folder.path() / "none" / "jobs.sqlite").find("none/jobs.sqlite"), std::string::npos);
 }
 
-TEST(SqliteStore, TakesUpADatabaseOfTheFirstVersion)
+// As the programs of before version 3 left it.
+void make_old(const std::filesystem::path& file, int version)
+{
+    std::filesystem::remove(file);
+    SqliteConnection db(file, SqliteConnection::Open::create);
+    db.execute((std::string(R"sql(
+CREATE TABLE jobs(seq INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, tenant TEXT NOT NULL,
+    state INTEGER NOT NULL, priority INTEGER NOT NULL, epoch INTEGER NOT NULL DEFAULT 0,
+    attempts INTEGER NOT NULL DEFAULT 0, cancel_requested INTEGER NOT NULL DEFAULT 0,
+    reused INTEGER NOT NULL DEFAULT 0, created_ms INTEGER NOT NULL, started_ms INTEGER, finished_ms INTEGER,
+    render_key TEXT NOT NULL, error_json TEXT NOT NULL DEFAULT '')sql") +
+                (version == 2 ? ", no_cache INTEGER NOT NULL DEFAULT 0" : "") + R"sql() STRICT;
+CREATE INDEX jobs_waiting ON jobs(priority DESC, seq) WHERE state = 0;
+CREATE INDEX jobs_open ON jobs(state) WHERE state IN (0, 1);
+CREATE INDEX jobs_reusable ON jobs(tenant, render_key, seq) WHERE state = 2;
+CREATE INDEX jobs_of_tenant ON jobs(tenant, seq);
+CREATE INDEX jobs_in_state ON jobs(tenant, state, seq);
+CREATE INDEX jobs_ended ON jobs(finished_ms) WHERE finished_ms IS NOT NULL;
+CREATE TABLE requests(job INTEGER PRIMARY KEY REFERENCES jobs(seq) ON DELETE CASCADE,
+    request_json TEXT NOT NULL) STRICT;
+CREATE TABLE results(job INTEGER PRIMARY KEY REFERENCES jobs(seq) ON DELETE CASCADE,
+    image_digest TEXT NOT NULL, samples INTEGER NOT NULL, reusable INTEGER NOT NULL,
+    report_json TEXT NOT NULL, scene_json TEXT NOT NULL) STRICT;
+CREATE TABLE labels(job INTEGER NOT NULL REFERENCES jobs(seq) ON DELETE CASCADE, name TEXT NOT NULL,
+    value TEXT NOT NULL, PRIMARY KEY (job, name)) STRICT, WITHOUT ROWID;
+CREATE INDEX labels_by_value ON labels(name, value, job);
+CREATE TABLE job_assets(job INTEGER NOT NULL REFERENCES jobs(seq) ON DELETE CASCADE, place INTEGER NOT NULL,
+    digest TEXT NOT NULL, PRIMARY KEY (job, place)) STRICT, WITHOUT ROWID;
+CREATE TABLE idempotency_keys(tenant TEXT NOT NULL, key TEXT NOT NULL, body_digest TEXT NOT NULL,
+    job INTEGER NOT NULL REFERENCES jobs(seq) ON DELETE CASCADE, created_ms INTEGER NOT NULL,
+    PRIMARY KEY (tenant, key)) STRICT, WITHOUT ROWID;
+CREATE INDEX idempotency_keys_of_job ON idempotency_keys(job);
+CREATE INDEX idempotency_keys_by_age ON idempotency_keys(created_ms);
+INSERT INTO jobs(id, tenant, state, priority, created_ms, finished_ms, render_key, error_json) VALUES
+    ('waits', 'alice', 0, 50, 1, NULL, 'key 1', ''), ('done', 'alice', 2, 50, 1, 2, 'key 2', ''),
+    ('broken', 'alice', 3, 50, 1, 3, 'key 3', '{"code":"broken_mesh"}');
+INSERT INTO requests VALUES (1, 'request 1'), (2, 'request 2'), (3, 'request 3');
+INSERT INTO results VALUES (2, 'sha256:picture', 64, 1, 'report', 'scene');
+PRAGMA application_id=1214606441;
+PRAGMA user_version=)sql" +
+                std::to_string(version))
+                   .c_str());
+}
+
+TEST(SqliteStore, TakesUpADatabaseOfAnEarlierVersion)
+{
+    for (const int version : {1, 2}) {
+        const TempFolder folder;
+        const auto file = folder.path() / "jobs.sqlite";
+        make_old(file, version);
+        for (int start = 0; start < 2; ++start) {
+            const auto store = open_sqlite_store(file);
+            EXPECT_EQ(store->get("alice", "waits")->spec.request_json, "request 1");
+            EXPECT_FALSE(store->get("alice", "waits")->spec.no_cache);
+            const auto done = store->get("alice", "done");
+            EXPECT_EQ(done->spec.request_json, "request 2");
+            EXPECT_EQ(done->result->image_digest, "sha256:picture");
+            EXPECT_EQ(done->result->report_json, "report");
+            EXPECT_EQ(done->result->scene_json, "scene");
+            EXPECT_EQ(store->find("alice", "broken")->failure.whole_json, "{\"code\":\"broken_mesh\"}");
+            auto request = a_request("new");
+            request.spec.no_cache = true;
+            EXPECT_TRUE(store->get("alice", store->submit(request).job.id)->spec.no_cache);
+        }
+        const auto store = open_sqlite_store(file);
+        for (const char* id : {"done", "broken"})
+            EXPECT_TRUE(store->remove("alice", id));
+        SqliteConnection db(file, SqliteConnection::Open::existing);
+        EXPECT_EQ(db.integer("SELECT count(*) FROM texts"), 2)
+            << "of the one that waits, and of the new ones";
+        EXPECT_EQ(db.integer("SELECT count(*) FROM text_bodies"), 2);
+    }
+}
+
+TEST(SqliteStore, KeepsATextOnceAndAsLongAsOneJobHasIt)
 {
     const TempFolder folder;
     const auto file = folder.path() / "jobs.sqlite";
-    std::string id;
-    {
-        const auto store = open_sqlite_store(file);
-        id = store->submit(a_request("old")).job.id;
-    }
-    {
-        SqliteConnection db(file, SqliteConnection::Open::existing);
-        db.execute("ALTER TABLE jobs DROP COLUMN no_cache; PRAGMA user_version=1;");
-    }
-    auto request = a_request("new");
-    request.spec.no_cache = true;
-    for (int start = 0; start < 2; ++start) {
-        const auto store = open_sqlite_store(file);
-        EXPECT_EQ(store->get("alice", id)->spec.request_json, a_request("old").spec.request_json);
-        EXPECT_FALSE(store->get("alice", id)->spec.no_cache);
-        EXPECT_TRUE(store->get("alice", store->submit(request).job.id)->spec.no_cache);
-    }
+    const auto store = open_sqlite_store(file);
+    auto request = a_request("shared");
+    request.spec.request_json = std::string(1 << 20, 'x');
+    server::JobResult result = a_result("shared");
+    result.report_json = std::string(1 << 20, 'r');
+    result.scene_json = std::string(1 << 20, 's');
+    std::vector<std::string> ids{store->submit(request).job.id};
+    EXPECT_TRUE(store->complete(store->claim("w", 1, tests::kTtl).at(0), result, 1));
+    const std::uint64_t one = store->stored_bytes();
+    EXPECT_GT(one, 3U << 20);
+    for (int i = 0; i < 20; ++i)
+        ids.push_back(store->submit(request).job.id);
+    EXPECT_LT(store->stored_bytes(), one + (1 << 20)) << "twenty more have the same texts";
+    for (std::size_t i = 0; i + 1 < ids.size(); ++i)
+        EXPECT_TRUE(store->remove("alice", ids[i]));
+    EXPECT_EQ(store->get("alice", ids.back())->result, result);
+    EXPECT_EQ(store->get("alice", ids.back())->spec.request_json, request.spec.request_json);
+    EXPECT_TRUE(store->remove("alice", ids.back()));
+    EXPECT_LT(store->stored_bytes(), 1U << 20) << "with the last one they go";
+    SqliteConnection db(file, SqliteConnection::Open::existing);
+    EXPECT_EQ(db.integer("SELECT count(*) FROM texts"), 0);
+    EXPECT_EQ(db.integer("SELECT count(*) FROM text_bodies"), 0);
 }
 
 TEST(SqliteStore, RefusesANewerVersionAndAnotherProgramsDatabase)

@@ -39,9 +39,9 @@ TEST_P(StoreAgain, NeedsItsAssetsAgain)
 {
     const server::JobId id = succeed("lost").id;
     store->render_again("alice", id, a_result("lost").image_digest);
-    const std::vector<std::string> needed = store->referenced_digests();
+    const std::vector<std::string> needed = store->assets_in_use();
     EXPECT_EQ(std::count(needed.begin(), needed.end(), "sha256:mesh-of-lost"), 1);
-    EXPECT_EQ(std::count(needed.begin(), needed.end(), a_result("lost").image_digest), 0);
+    EXPECT_FALSE(store->shows(a_result("lost").image_digest));
     store->sweep(now() + 100 * tests::kDay_ms);
     EXPECT_EQ(get(id).state, StoredState::queued) << "what waits does not expire";
 }
@@ -66,7 +66,7 @@ TEST_P(StoreAgain, QueuesOnlyWhatSucceededWithThatPicture)
     EXPECT_EQ(get(done).state, StoredState::succeeded);
     const server::JobId failing = submit("failing").id;
     EXPECT_FALSE(store->render_again("alice", failing, digest));
-    store->fail(claim_one(), "{}", false, now());
+    store->fail(claim_one(), {.summary_json = "{}", .whole_json = "{}"}, false, now());
     EXPECT_FALSE(store->render_again("alice", failing, digest));
     EXPECT_TRUE(store->render_again("alice", done, digest));
     EXPECT_FALSE(store->render_again("alice", done, digest)) << "it waits already";

@@ -153,8 +153,8 @@ TEST_P(StoreQueue, RefusesEveryWordOfAZombie)
 
     EXPECT_EQ(store->renew({zombie}, kTtl), 0U);
     EXPECT_FALSE(store->complete(zombie, a_result("zombie"), now()));
-    EXPECT_FALSE(store->fail(zombie, "{}", false, now()));
-    EXPECT_FALSE(store->fail(zombie, "{}", true, now()));
+    EXPECT_FALSE(store->fail(zombie, {.summary_json = "{}", .whole_json = "{}"}, false, now()));
+    EXPECT_FALSE(store->fail(zombie, {.summary_json = "{}", .whole_json = "{}"}, true, now()));
     EXPECT_FALSE(store->confirm_cancel(zombie, now()));
     store->release({zombie});
     EXPECT_EQ(get(id).state, StoredState::leased);
@@ -207,14 +207,16 @@ TEST_P(StoreQueue, GivesUpAJobAfterFiveAttempts)
 {
     const auto id = submit("bunny").id;
     for (std::uint32_t attempt = 1; attempt < server::kMaxAttempts; ++attempt) {
-        EXPECT_TRUE(store->fail(claim_one(), "{\"attempt\":1}", true, now()));
+        EXPECT_TRUE(
+            store->fail(claim_one(), {.summary_json = "{}", .whole_json = "{\"attempt\":1}"}, true, now()));
         EXPECT_EQ(get(id).state, StoredState::queued);
         EXPECT_EQ(get(id).attempts, attempt);
-        EXPECT_EQ(get(id).error_json, "");
+        EXPECT_EQ(get(id).failure.whole_json, "");
     }
-    EXPECT_TRUE(store->fail(claim_one(), "{\"code\":\"last\"}", true, now()));
+    EXPECT_TRUE(
+        store->fail(claim_one(), {.summary_json = "{}", .whole_json = "{\"code\":\"last\"}"}, true, now()));
     EXPECT_EQ(get(id).state, StoredState::failed);
-    EXPECT_EQ(get(id).error_json, "{\"code\":\"last\"}");
+    EXPECT_EQ(get(id).failure.whole_json, "{\"code\":\"last\"}");
     EXPECT_EQ(get(id).finished_ms, now());
     EXPECT_TRUE(store->claim("worker", 1, kTtl).empty());
 }
@@ -222,9 +224,10 @@ TEST_P(StoreQueue, GivesUpAJobAfterFiveAttempts)
 TEST_P(StoreQueue, FailsAJobAtOnceWhenARetryIsHopeless)
 {
     const auto id = submit("bunny").id;
-    EXPECT_TRUE(store->fail(claim_one(), "{\"code\":\"broken_mesh\"}", false, now()));
+    EXPECT_TRUE(store->fail(
+        claim_one(), {.summary_json = "{}", .whole_json = "{\"code\":\"broken_mesh\"}"}, false, now()));
     EXPECT_EQ(get(id).state, StoredState::failed);
-    EXPECT_EQ(get(id).error_json, "{\"code\":\"broken_mesh\"}");
+    EXPECT_EQ(get(id).failure.whole_json, "{\"code\":\"broken_mesh\"}");
 }
 
 TEST_P(StoreQueue, CountsAttemptsOfLapsedLeasesSoThatTheWorkerCanGiveUp)
@@ -283,7 +286,7 @@ TEST_P(StoreQueue, EndsACanceledJobWhoseWorkerGivesItBackOrLosesIt)
     const auto failed = submit("failed").id;
     const Lease second = claim_one();
     store->cancel("alice", failed, now());
-    EXPECT_TRUE(store->fail(second, "{}", true, now()));
+    EXPECT_TRUE(store->fail(second, {.summary_json = "{}", .whole_json = "{}"}, true, now()));
     EXPECT_EQ(get(failed).state, StoredState::canceled);
 
     const auto lost = submit("lost").id;
@@ -323,7 +326,7 @@ TEST_P(StoreQueue, WakesAWaiterWhenAJobComesBack)
     std::thread waiter([&] { store->wait_work(1h, {}); });
     store->release({lease});
     waiter.join();
-    store->fail(claim_one(), "{}", true, now());
+    store->fail(claim_one(), {.summary_json = "{}", .whole_json = "{}"}, true, now());
     store->wait_work(1h, {});
 }
 

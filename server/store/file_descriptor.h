@@ -1,4 +1,4 @@
-// OwnedFd: a file descriptor that is closed once, by whoever holds it last.
+// FileDescriptor: a file descriptor that is closed once, by whoever holds it last.
 #pragma once
 
 #include <unistd.h>
@@ -6,12 +6,12 @@
 
 namespace server {
 
-class OwnedFd {
+class FileDescriptor {
 public:
-    OwnedFd() = default;
-    explicit OwnedFd(int fd) : fd_(fd) {}
-    OwnedFd(OwnedFd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-    OwnedFd& operator=(OwnedFd&& other) noexcept
+    FileDescriptor() = default;
+    explicit FileDescriptor(int fd) : fd_(fd) {}
+    FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    FileDescriptor& operator=(FileDescriptor&& other) noexcept
     {
         if (this != &other) {
             reset();
@@ -19,7 +19,7 @@ public:
         }
         return *this;
     }
-    ~OwnedFd() { reset(); }
+    ~FileDescriptor() { reset(); }
 
     int get() const { return fd_; }
     explicit operator bool() const { return fd_ >= 0; }
