@@ -22,6 +22,7 @@ struct Title {
 constexpr std::array kTitles{
     Title{"asset_damaged", "Asset is damaged"},
     Title{"bad_request", "Request cannot be read"},
+    Title{"busy", "Service is busy"},
     Title{"digest_mismatch", "Bytes do not match their digest"},
     Title{"draining", "Service is shutting down"},
     Title{"duplicate_name", "Two files have one name"},
@@ -57,6 +58,7 @@ constexpr std::array kTitles{
     Title{"time_limit", "Time limit reached"},
     Title{"too_many_attempts", "Tried too often"},
     Title{"too_many_bodies", "Too many bodies at the same time"},
+    Title{"too_many_connections", "Too many connections"},
     Title{"too_many_parts", "Too many files"},
     Title{"too_many_waiters", "Too many waiting requests"},
     Title{"unsupported_encoding", "Content encoding is not supported"},
