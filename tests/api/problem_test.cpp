@@ -1,4 +1,5 @@
 #include "api/problem.h"
+#include "tests/support/places.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -82,7 +83,7 @@ std::set<std::string> codes_in_the_sources()
     std::set<std::string> codes;
     for (const char* top : {"server", "api"})
         for (const auto& entry : std::filesystem::recursive_directory_iterator(
-                 std::filesystem::path(HELIOGRAPH_SOURCE_DIR) / top)) {
+                 std::filesystem::path(tests::source_dir()) / top)) {
             if (entry.path().extension() != ".cpp") continue;
             std::ifstream file(entry.path());
             const std::string text{std::istreambuf_iterator<char>(file), {}};
