@@ -4,6 +4,7 @@
 #pragma once
 
 #include "renderer/accel/mesh_hit.h"
+#include "renderer/accel/mesh_kernels.h"
 #include "renderer/accel/triangle_block.h"
 #include "renderer/geometry/triangle.h"
 
@@ -13,14 +14,21 @@ namespace renderer {
 inline bool improve_hit(const WatertightRay<double>& ray,
                         double t_min,
                         double t_max,
-                        const TriangleBlock& block,
+                        const MeshView& mesh,
+                        const TriangleBlock& block, // of the mesh
                         unsigned lane,
                         MeshHit& best)
 {
     const std::uint32_t primitive = block.primitive[lane];
     if (primitive == TriangleBlock::kNone) return false;
-    const auto hit = intersect_watertight(
-        ray, t_min, t_max, block.corner(0, lane), block.corner(1, lane), block.corner(2, lane));
+    Vec3d a = block.corner(0, lane), b = block.corner(1, lane), c = block.corner(2, lane);
+    if (mesh.residuals != nullptr) {
+        const CornerResiduals& lacking = mesh.residuals[&block - mesh.leaves];
+        a = a + lacking.corner(0, lane);
+        b = b + lacking.corner(1, lane);
+        c = c + lacking.corner(2, lane);
+    }
+    const auto hit = intersect_watertight(ray, t_min, t_max, a, b, c);
     if (!hit || hit->t > best.t || (hit->t == best.t && primitive > best.primitive)) return false;
     best = {hit->t, primitive, hit->barycentrics};
     return true;

@@ -105,7 +105,7 @@ HWY_INLINE bool visit_leaf(const MeshView& mesh, std::uint32_t code, RayRun& run
     for (; block <= last; ++block)
         for (unsigned lanes = may_hit(run, ray, *block); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
-            if (!improve_hit(run.exact(ray), run.t_min[ray], run.t_max[ray], *block, lane, best)) continue;
+            if (!improve_hit(run.exact(ray), run.t_min[ray], run.t_max[ray], mesh, *block, lane, best)) continue;
             if (kAnyHit) return true;
             run.end[ray] = std::min(run.end[ray], run.end_for(best.t, ray));
         }

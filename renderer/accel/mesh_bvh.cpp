@@ -30,10 +30,18 @@ MeshBvh::build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& po
     const auto corner = [&](std::uint32_t triangle, std::size_t k) {
         return mesh.positions[mesh.triangles[triangle][k]] * built.scale_;
     };
+    const bool rounded = !mesh.residuals.empty();
+    const auto residual = [&](std::uint32_t triangle, std::size_t k) {
+        return mesh.residuals[mesh.triangles[triangle][k]] * built.scale_;
+    };
     const LeafFiller leaves{
         .blocks =
             [](std::uint32_t count) { return (count + TriangleBlock::kLanes - 1) / TriangleBlock::kLanes; },
-        .reserve = [&](std::uint32_t blocks) { built.leaves_ = PlainArray<TriangleBlock>(blocks); },
+        .reserve =
+            [&](std::uint32_t blocks) {
+                built.leaves_ = PlainArray<TriangleBlock>(blocks);
+                if (rounded) built.residuals_ = PlainArray<CornerResiduals>(blocks);
+            },
         .fill =
             [&](const BvhNode<float>& leaf, std::uint32_t block) {
                 TriangleBlock* to = built.leaves_.data() + block;
@@ -43,9 +51,17 @@ MeshBvh::build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& po
                         i % TriangleBlock::kLanes,
                         i < leaf.count ? triangle : TriangleBlock::kNone,
                         {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)});
+                    if (rounded)
+                        built.residuals_[block + i / TriangleBlock::kLanes].set(
+                            i % TriangleBlock::kLanes,
+                            {residual(triangle, 0), residual(triangle, 1), residual(triangle, 2)});
                 }
             }};
     built.bvh_ = widen(*bvh, leaves, pool);
+    const Bounds3f& box = built.bvh_.bounds;
+    built.blur_ = static_cast<double>(std::max(max_abs(box.lower), max_abs(box.upper)));
+    if (rounded)
+        built.blur_ += built.blur_ * 0x1p25; // a float is within 2^-24 of itself of what it stands for
     return built;
 }
 
@@ -70,9 +86,10 @@ std::optional<MeshHit> MeshBvh::closest_hit_brute_force(const Ray& ray) const
     const WatertightRay<double> exact(ray.origin * scale, ray.direction * direction_scale);
     const double units = scale / direction_scale;
     MeshHit best{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
+    const MeshView mesh = view();
     for (const TriangleBlock& block : leaves_)
         for (unsigned lane = 0; lane < TriangleBlock::kLanes; ++lane)
-            improve_hit(exact, ray.t_min * units, ray.t_max * units, block, lane, best);
+            improve_hit(exact, ray.t_min * units, ray.t_max * units, mesh, block, lane, best);
     if (best.primitive == TriangleBlock::kNone) return std::nullopt;
     best.t *= direction_scale / scale;
     return best;
@@ -90,7 +107,7 @@ std::uint64_t MeshBvh::node_bytes() const
 
 std::uint64_t MeshBvh::size_bytes() const
 {
-    return sizeof *this + node_bytes() + leaves_.size_bytes();
+    return sizeof *this + node_bytes() + leaves_.size_bytes() + residuals_.size_bytes();
 }
 
 } // namespace renderer

@@ -1,11 +1,11 @@
 // MeshBvh: the triangles of a mesh, or of a run of them, made ready for rays.
 //
 // Frame      object space: the mesh's own coordinates. Rays in double.
-// Precision  what is hit is decided in double, by intersect_watertight on the float corners, so a hit is a
-//            pure function of (ray, triangle). Boxes and a quick first look at each triangle work in float,
-//            on a copy of the ray whose origin was first brought to the mesh's bounds, and pass whatever
-//            float cannot tell: they only save work. Hence every kind of tree, and no tree at all, gives the
-//            same hit to the last bit.
+// Precision  what is hit is decided in double, by intersect_watertight on the corners, which are floats, with
+//            residuals where the mesh has them: so a hit is a pure function of (ray, triangle). Boxes and a
+//            quick first look at each triangle work in float, on a copy of the ray whose origin was first
+//            brought to the mesh's bounds, and pass whatever float cannot tell: they only save work. Hence
+//            every kind of tree, and no tree at all, gives the same hit to the last bit.
 // Ties       the least (t, primitive) wins.
 // Threads    immutable after build; rays may be traced from any number of threads.
 #pragma once
@@ -59,12 +59,19 @@ public:
 private:
     MeshView view() const
     {
-        return {bvh_.nodes.empty() ? nullptr : bvh_.nodes.data(), leaves_.data(), bvh_.bounds, scale_};
+        return {bvh_.nodes.empty() ? nullptr : bvh_.nodes.data(),
+                leaves_.data(),
+                residuals_.empty() ? nullptr : residuals_.data(),
+                bvh_.bounds,
+                scale_,
+                blur_};
     }
 
-    WideBvh bvh_;                      // in scaled coordinates
-    PlainArray<TriangleBlock> leaves_; // with copies of the corners, so that a test reads one place
+    WideBvh bvh_;                           // in scaled coordinates
+    PlainArray<TriangleBlock> leaves_;      // with copies of the corners, so that a test reads one place
+    PlainArray<CornerResiduals> residuals_; // beside the leaves; none where floats hold the corners
     Bounds3f bounds_;
+    double blur_ = 0; // MeshView's
     float scale_ = 1; // power of two that brings coordinates near 1 where they are far from it
     std::uint64_t degenerate_ = 0;
 };

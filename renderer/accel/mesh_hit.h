@@ -19,7 +19,7 @@ struct MeshHit {
 inline SurfacePoint surface_point(const Mesh& mesh, const MeshHit& hit)
 {
     const Triangle& v = mesh.triangles[hit.primitive];
-    return triangle_point(mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], hit.barycentrics);
+    return triangle_point(mesh.position(v[0]), mesh.position(v[1]), mesh.position(v[2]), hit.barycentrics);
 }
 
 } // namespace renderer

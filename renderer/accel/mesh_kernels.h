@@ -21,8 +21,12 @@ namespace renderer {
 struct MeshView {
     const WideNode* nodes = nullptr; // the root is first; none where there is nothing to hit
     const TriangleBlock* leaves = nullptr;
+    const CornerResiduals* residuals = nullptr; // one a block; none where floats hold the corners
     Bounds3f bounds;
     float scale = 1;
+    // What double arithmetic on a corner is off by, times 2^49: its size, and much more where the corners that the
+    // kernels see lack residuals.
+    double blur = 0;
 };
 
 struct MeshKernels {

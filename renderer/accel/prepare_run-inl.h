@@ -65,7 +65,7 @@ public:
     {
         load(kind);
         scale(static_cast<double>(mesh.scale), kind);
-        clip(mesh.bounds);
+        clip(mesh.bounds, mesh.blur);
         shear();
     }
 
@@ -134,13 +134,12 @@ private:
     }
 
     // Where the rays are inside the bounds; those that miss them leave the run.
-    HWY_INLINE void clip(const Bounds3f& box)
+    HWY_INLINE void clip(const Bounds3f& box, double mesh_blur)
     {
         const D d;
         // Where double itself may be off: origin, box and the test's own roundings.
-        const double size = static_cast<double>(std::max(max_abs(box.lower), max_abs(box.upper)));
         const auto farthest = hn::Max(hn::Abs(origin_[0]), hn::Max(hn::Abs(origin_[1]), hn::Abs(origin_[2])));
-        const auto blur = hn::Mul(hn::Add(farthest, hn::Set(d, size)), hn::Set(d, 0x1p-49));
+        const auto blur = hn::Mul(hn::Add(farthest, hn::Set(d, mesh_blur)), hn::Set(d, 0x1p-49));
         auto enters = t_min_, leaves = t_max_;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto lower = hn::Sub(hn::Set(d, static_cast<double>(box.lower[axis])), blur);

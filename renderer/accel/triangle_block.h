@@ -30,4 +30,20 @@ struct alignas(16) TriangleBlock {
     }
 };
 
+// What the corners of a block lack: one beside every block of a mesh that has residuals.
+struct alignas(16) CornerResiduals {
+    float corners[3][3][4]; // as TriangleBlock's
+
+    void set(std::size_t lane, const Vec3f (&triangle)[3])
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                corners[k][axis][lane] = triangle[k][axis];
+    }
+    Vec3d corner(std::size_t k, std::size_t lane) const
+    {
+        return {corners[k][0][lane], corners[k][1][lane], corners[k][2][lane]};
+    }
+};
+
 } // namespace renderer

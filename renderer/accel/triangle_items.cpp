@@ -4,6 +4,8 @@
 #include "renderer/geometry/triangle.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace renderer {
@@ -16,6 +18,40 @@ struct Share {
     std::size_t kept = 0;
     Bounds3f bounds;
 };
+
+// The floats on either side of a place; the place itself where it is one.
+Vec3f round_down(Vec3d p)
+{
+    const auto down = [](double x) {
+        const auto nearest = static_cast<float>(x);
+        return static_cast<double>(nearest) > x
+                   ? std::nextafter(nearest, -std::numeric_limits<float>::infinity())
+                   : nearest;
+    };
+    return {down(p.x), down(p.y), down(p.z)};
+}
+Vec3f round_up(Vec3d p)
+{
+    return -round_down(-p);
+}
+
+// As take(), of corners that are more than floats.
+Share take_with_residuals(const Mesh& mesh, std::uint32_t first, std::uint32_t end, BuildItem<float>* to)
+{
+    Share share;
+    for (std::uint32_t i = first; i < end; ++i) {
+        const Triangle& v = mesh.triangles[i];
+        if (is_degenerate(mesh.position(v[0]), mesh.position(v[1]), mesh.position(v[2]))) continue;
+        Bounds3f box;
+        for (const std::uint32_t vertex : v) {
+            box.extend(round_down(mesh.position(vertex)));
+            box.extend(round_up(mesh.position(vertex)));
+        }
+        share.bounds.extend(box);
+        to[share.kept++] = {box.lower, i, box.upper};
+    }
+    return share;
+}
 
 Share take(const Mesh& mesh, std::uint32_t first, std::uint32_t end, BuildItem<float>* to)
 {
@@ -38,13 +74,14 @@ Share take(const Mesh& mesh, std::uint32_t first, std::uint32_t end, BuildItem<f
 TriangleItems triangle_items(const Mesh& mesh, TriangleRun run, ThreadPool& pool, const std::stop_token& stop)
 {
     TriangleItems made{PlainArray<BuildItem<float>>(run.count), {}, 1};
+    const auto take_share = mesh.residuals.empty() ? take : take_with_residuals;
     std::vector<Share> shares((run.count + kShare - 1) / kShare);
     const auto first_of = [&](std::size_t i) { return static_cast<std::uint32_t>(i) * kShare; };
     pool.run(
         shares.size(),
         [&](std::size_t i, unsigned) {
             const std::uint32_t first = first_of(i), end = std::min(run.count, first + kShare);
-            shares[i] = take(mesh, run.first + first, run.first + end, made.items.data() + first);
+            shares[i] = take_share(mesh, run.first + first, run.first + end, made.items.data() + first);
         },
         stop);
     if (stop.stop_requested()) return made;

@@ -22,7 +22,8 @@ struct NumericsReport {
     std::uint64_t non_finite_samples = 0;   // dropped and counted, never hidden
     std::uint64_t degenerate_triangles = 0; // zero area: never hit
     double coordinate_ratio = 0;            // largest coordinate over scene diagonal
-    std::string precision;                  // "float" or "double", of the ray kernels
+    std::string
+        precision; // of the corners of meshes: "float", "double" or "mixed"; hits are decided in double
 };
 
 enum class StopReason : std::uint8_t { samples, time };

@@ -11,12 +11,21 @@ Bounds3f Mesh::bounds() const
     return box;
 }
 
+Bounds3d Mesh::bounds_in_file() const
+{
+    Bounds3d box;
+    for (const Triangle& triangle : triangles)
+        for (const std::uint32_t vertex : triangle)
+            box.extend(position(vertex));
+    return box.empty() ? box : Bounds3d{box.lower + origin, box.upper + origin};
+}
+
 std::uint64_t Mesh::size_bytes() const
 {
     const auto bytes = [](const auto& array) {
         return static_cast<std::uint64_t>(array.capacity()) * sizeof(*array.data());
     };
-    std::uint64_t sum = bytes(positions) + bytes(normals) + bytes(uvs) + bytes(triangles) +
+    std::uint64_t sum = bytes(positions) + bytes(residuals) + bytes(normals) + bytes(uvs) + bytes(triangles) +
                         bytes(triangle_materials) + bytes(materials) + bytes(parts);
     for (const MeshMaterial& material : materials) {
         sum += material.name.capacity() + bytes(material.textures);

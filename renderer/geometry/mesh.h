@@ -1,8 +1,9 @@
 // Mesh: triangles as they came out of a file, checked: the imported form, before any BVH.
 //
-// Frame    the file's own coordinates; `part`s of a scene-graph file are already placed.
+// Frame    the mesh's own: the file's coordinates less `origin`, which is zero unless the mesh lies far away
+//          (mesh_frame.h); `part`s of a scene-graph file are already placed.
 // Promise  of a Mesh that validate_mesh() passed: every index is in range, every number finite, at least one
-// triangle.
+//          triangle, every residual less than what its position was rounded by.
 #pragma once
 
 #include "renderer/color/rgb.h"
@@ -41,7 +42,10 @@ struct MeshPart {
 using Triangle = std::array<std::uint32_t, 3>; // vertex indices, counter-clockwise seen from outside
 
 struct Mesh {
+    Vec3d origin{};
     std::vector<Vec3f> positions;
+    std::vector<Vec3f>
+        residuals; // one a vertex, to be added to its position: what a float cannot hold; or none
     std::vector<Vec3f> normals; // one a vertex, unit; or none
     std::vector<Vec2f> uvs;     // one a vertex; or none
     std::vector<Triangle> triangles;
@@ -49,7 +53,15 @@ struct Mesh {
     std::vector<MeshMaterial> materials;           // may be empty
     std::vector<MeshPart> parts;                   // may be empty
 
-    Bounds3f bounds() const;          // of the vertices that triangles use
+    // As exactly as it is known: 48 bits where there are residuals.
+    Vec3d position(std::uint32_t vertex) const
+    {
+        const Vec3d rounded = to_double(positions[vertex]);
+        return residuals.empty() ? rounded : rounded + to_double(residuals[vertex]);
+    }
+
+    Bounds3f bounds() const;          // of the positions that triangles use
+    Bounds3d bounds_in_file() const;  // the same in the file's coordinates, residuals counted
     std::uint64_t size_bytes() const; // of the arrays
     // Of several parts of one name, the first. Valid as long as `parts` is.
     std::map<std::string_view, const MeshPart*> parts_by_name() const;

@@ -26,15 +26,14 @@ Vec3d offset_origin(const SurfacePoint& from, Vec3d direction)
     return {outwards(moved.x, offset.x), outwards(moved.y, offset.y), outwards(moved.z, offset.z)};
 }
 
-SurfacePoint triangle_point(Vec3f a, Vec3f b, Vec3f c, Vec3d barycentrics)
+SurfacePoint triangle_point(Vec3d a, Vec3d b, Vec3d c, Vec3d barycentrics)
 {
-    const Vec3d da = to_double(a) * barycentrics.x, db = to_double(b) * barycentrics.y,
-                dc = to_double(c) * barycentrics.z;
+    const Vec3d da = a * barycentrics.x, db = b * barycentrics.y, dc = c * barycentrics.z;
     SurfacePoint point;
     point.position = da + db + dc;
     // Products and sums round; the weights themselves may miss a sum of 1 by four roundings.
     point.error = (abs(da) + abs(db) + abs(dc)) * gamma<double>(8);
-    point.normal = normalize(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
+    point.normal = normalize(cross(b - a, c - a));
     return point;
 }
 

@@ -23,6 +23,6 @@ Vec3d offset_origin(const SurfacePoint& from, Vec3d direction);
 
 // Corner form: the point of triangle a, b, c with the given weights (any winding; the normal is along (b-a) x
 // (c-a)).
-SurfacePoint triangle_point(Vec3f a, Vec3f b, Vec3f c, Vec3d barycentrics);
+SurfacePoint triangle_point(Vec3d a, Vec3d b, Vec3d c, Vec3d barycentrics);
 
 } // namespace renderer

@@ -34,6 +34,7 @@ Found check_counts(const Mesh& mesh)
                             text(mesh.positions.size()) +
                             " vertices: there must be one for every vertex, or none");
     };
+    if (Found f = per_vertex(mesh.residuals.size(), "residuals")) return f;
     if (Found f = per_vertex(mesh.normals.size(), "normals")) return f;
     if (Found f = per_vertex(mesh.uvs.size(), "texture coordinates")) return f;
     if (!mesh.triangle_materials.empty() && mesh.triangle_materials.size() != mesh.triangles.size())
@@ -51,10 +52,30 @@ Found not_finite(const char* what, std::size_t vertex)
                      " is not a finite number (vertices are counted from 0): repair or remove it"};
 }
 
+// Rounding to nearest leaves 2^-24 of a number at most, and the kernels count on that.
+bool is_rest(Vec3f residual, Vec3f position)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(std::abs(residual[axis]) <= 0x1p-24f * std::abs(position[axis]))) return false;
+    return true;
+}
+
+Found check_residuals(const Mesh& mesh)
+{
+    for (std::size_t i = 0; i < mesh.residuals.size(); ++i) {
+        if (!is_finite(mesh.residuals[i])) return not_finite("residual", i);
+        if (!is_rest(mesh.residuals[i], mesh.positions[i]))
+            return inconsistent("the residual of vertex " + text(i) + " is more than rounding leaves");
+    }
+    return std::nullopt;
+}
+
 Found check_vertices(const Mesh& mesh)
 {
+    if (!is_finite(mesh.origin)) return Fault{"", "non_finite", "the origin of the mesh is not finite"};
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         if (!is_finite(mesh.positions[i])) return not_finite("position", i);
+    if (Found f = check_residuals(mesh)) return f;
     for (std::size_t i = 0; i < mesh.normals.size(); ++i)
         if (!is_finite(mesh.normals[i])) return not_finite("normal", i);
     for (std::size_t i = 0; i < mesh.uvs.size(); ++i)

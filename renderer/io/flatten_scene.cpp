@@ -1,5 +1,6 @@
 #include "renderer/io/flatten_scene.h"
 
+#include "renderer/geometry/mesh_frame.h"
 #include "renderer/io/import_bounds.h"
 #include "renderer/io/text.h"
 #include "renderer/io/triangulate.h"
@@ -88,6 +89,7 @@ private:
     const Limits& limits_;
     ImportedMesh& result_;
     std::vector<Piece> pieces_;
+    std::vector<Vec3d> in_file_; // positions, placed
     bool with_normals_ = false, with_uvs_ = false, with_materials_ = false;
     std::uint64_t triangles_ = 0, lines_and_points_ = 0;
 };
@@ -137,10 +139,11 @@ void Flattener::make_flat(Piece& piece) const
     Piece flat;
     for (const Triangle& t : piece.triangles) {
         const std::array corners{piece.positions[t[0]], piece.positions[t[1]], piece.positions[t[2]]};
+        const std::array outline{to_double(corners[0]), to_double(corners[1]), to_double(corners[2])};
         const auto first = static_cast<std::uint32_t>(flat.positions.size());
         flat.triangles.push_back({first, first + 1, first + 2});
         flat.positions.insert(flat.positions.end(), corners.begin(), corners.end());
-        flat.normals.insert(flat.normals.end(), 3, polygon_normal(corners));
+        flat.normals.insert(flat.normals.end(), 3, polygon_normal(outline));
         if (with_uvs_) flat.uvs.insert(flat.uvs.end(), {piece.uvs[t[0]], piece.uvs[t[1]], piece.uvs[t[2]]});
     }
     flat.lines_and_points = piece.lines_and_points;
@@ -188,7 +191,7 @@ void Flattener::count(const aiNode& node)
 void Flattener::place(const Piece& piece, const Affine3& world_from_object, unsigned material)
 {
     Mesh& mesh = result_.mesh;
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto first = static_cast<std::uint32_t>(in_file_.size());
     const auto& rows = world_from_object.rows;
     // Normals go with the cofactors, which exist where the inverse does not; a mirroring transform turns both
     // them and the winding.
@@ -196,7 +199,7 @@ void Flattener::place(const Piece& piece, const Affine3& world_from_object, unsi
     const std::array<Vec3d, 3> cofactors{
         cross(rows[1], rows[2]) * side, cross(rows[2], rows[0]) * side, cross(rows[0], rows[1]) * side};
     for (const Vec3f p : piece.positions)
-        mesh.positions.push_back(to_float(world_from_object.point(to_double(p))));
+        in_file_.push_back(world_from_object.point(to_double(p)));
     for (const Vec3f given : piece.normals) {
         const Vec3d n = to_double(given);
         const Vec3d turned{dot(cofactors[0], n), dot(cofactors[1], n), dot(cofactors[2], n)};
@@ -242,6 +245,7 @@ std::optional<ImportFault> Flattener::run()
     if (triangles_ > limits_.triangles) return over_triangle_limit(triangles_, limits_, false);
     materials();
     place(*scene_.mRootNode, {});
+    set_positions(result_.mesh, in_file_);
     std::erase_if(result_.mesh.parts,
                   [](const MeshPart& p) { return p.name.empty() || p.triangle_count == 0; });
     if (lines_and_points_)

@@ -1,5 +1,6 @@
 #include "renderer/io/obj_mesh.h"
 
+#include "renderer/geometry/mesh_frame.h"
 #include "renderer/io/triangulate.h"
 
 #include <algorithm>
@@ -80,6 +81,7 @@ void ObjMesh::build(Mesh& mesh)
     std::vector<std::uint32_t> first(positions.size(),
                                      ObjCorner::kNone); // vertex made of a position: a list of its kinds
     std::vector<std::uint32_t> next;
+    std::vector<Vec3d> in_file;
     std::vector<ObjCorner> made;
     mesh.triangles.reserve(triangles.size());
     for (const auto& triangle : triangles) {
@@ -95,7 +97,7 @@ void ObjMesh::build(Mesh& mesh)
                 indices[i] = *link; // before next grows: link may point into it
                 made.push_back(c);
                 next.push_back(ObjCorner::kNone);
-                mesh.positions.push_back(positions[c.at[0]]);
+                in_file.push_back(positions[c.at[0]]);
                 if (with_uvs) mesh.uvs.push_back(c.at[1] == ObjCorner::kNone ? Vec2f{} : uvs[c.at[1]]);
                 if (with_normals) mesh.normals.push_back(normals[c.at[2]]);
             } else {
@@ -104,6 +106,7 @@ void ObjMesh::build(Mesh& mesh)
         }
     }
     *this = {};
+    set_positions(mesh, in_file);
 }
 
 } // namespace renderer

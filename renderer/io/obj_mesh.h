@@ -18,7 +18,8 @@ struct ObjCorner {
 };
 
 struct ObjMesh {
-    std::vector<Vec3f> positions, normals;
+    std::vector<Vec3d> positions;
+    std::vector<Vec3f> normals;
     std::vector<Vec2f> uvs;
     std::vector<std::array<ObjCorner, 3>> triangles;
     // The state that statements set and triangles take; kNone: none.
@@ -30,7 +31,7 @@ struct ObjMesh {
     void forget_parts();
     // Stable: triangles of no part first, then part by part; fills `parts`, leaving out empty ones.
     void make_parts_contiguous(std::vector<MeshPart>& parts);
-    // Positions, normals, uvs and triangles of `mesh`. Every corner must be in range. Empties this.
+    // Frame, positions, normals, uvs and triangles of `mesh`. Every corner must be in range. Empties this.
     void build(Mesh& mesh);
 
 private:

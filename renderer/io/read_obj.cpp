@@ -63,7 +63,7 @@ private:
     ObjMesh obj_;
     ImportedMesh result_;
     std::vector<ObjCorner> corners_; // of the face at hand
-    std::vector<Vec3f> outline_;
+    std::vector<Vec3d> outline_;
     std::vector<Triangle> pieces_;
     std::array<std::uint64_t, 3> largest_{}, largest_line_{}; // references of each kind, checked at the end
     std::map<std::string, std::uint32_t, std::less<>> material_numbers_, part_numbers_;
@@ -75,9 +75,9 @@ private:
 ObjReader::Check ObjReader::vertex(std::string_view rest)
 {
     const std::string_view words = trimmed(rest);
-    const auto p = take_vec3(rest);
+    const auto p = take_point(rest);
     if (!p) return unreadable("a vertex needs three numbers, not " + quoted(words));
-    if (!is_finite(*p))
+    if (!is_finite(to_float(*p)))
         return fault("non_finite", "vertex " + std::to_string(obj_.positions.size() + 1) + " is not finite");
     obj_.positions.push_back(*p);
     return std::nullopt;
@@ -150,7 +150,7 @@ ObjReader::Check ObjReader::face(std::string_view rest)
     outline_.clear();
     // A face may name vertices that come later: its outline is then not yet known, and a fan has to do.
     for (const ObjCorner& c : corners_)
-        outline_.push_back(c.at[0] < obj_.positions.size() ? obj_.positions[c.at[0]] : Vec3f{});
+        outline_.push_back(c.at[0] < obj_.positions.size() ? obj_.positions[c.at[0]] : Vec3d{});
     pieces_.clear();
     if (!triangulate(outline_, pieces_))
         return fault("over_limit",

@@ -1,10 +1,12 @@
 #include "renderer/io/read_ply.h"
 
+#include "renderer/geometry/mesh_frame.h"
 #include "renderer/io/import_bounds.h"
 #include "renderer/io/ply_header.h"
 #include "renderer/io/ply_values.h"
 #include "renderer/io/triangulate.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -62,6 +64,11 @@ private:
     using Check = std::optional<ImportFault>;
     using Build = Check (PlyReader::*)(const Item& who); // what a list of indices becomes
 
+    bool has_float_places(const PlyElement& element) const;
+    Vec3d place_of(std::size_t vertex) const
+    {
+        return in_file_.empty() ? to_double(result_.mesh.positions[vertex]) : in_file_[vertex];
+    }
     Check promises_fit() const;
     Check vertices(const PlyElement& element);
     Check
@@ -84,11 +91,20 @@ private:
     PlyValues values_;
     const Limits& limits_;
     ImportedMesh result_;
+    std::vector<Vec3d> in_file_; // positions that are more than floats
     std::vector<std::int64_t> indices_;
-    std::vector<Vec3f> outline_;
+    std::vector<Vec3d> outline_;
     std::vector<Triangle> pieces_;
     std::uint64_t vertex_count_ = 0, left_out_ = 0;
 };
+
+bool PlyReader::has_float_places(const PlyElement& element) const
+{
+    if (header_.encoding == PlyHeader::Encoding::ascii) return false;
+    return std::all_of(element.properties.begin(), element.properties.end(), [](const PlyProperty& property) {
+        return slot_of(property) > 2 || property.type == PlyType::float32 || size_of(property.type) < 4;
+    });
+}
 
 // A count that cannot be true is refused before anything is allocated for it.
 PlyReader::Check PlyReader::promises_fit() const
@@ -167,14 +183,22 @@ PlyReader::Check PlyReader::vertices(const PlyElement& element)
     if (!has[0] || !has[1] || !has[2])
         return ImportFault{"malformed", "element vertex has no properties x, y and z"};
     const bool normals = has[3] && has[4] && has[5], uvs = has[6] && has[7];
+    const bool floats = has_float_places(element);
     Mesh& mesh = result_.mesh;
-    mesh.positions.reserve(element.count);
+    if (floats)
+        mesh.positions.reserve(element.count);
+    else
+        in_file_.reserve(element.count);
     if (normals) mesh.normals.reserve(element.count);
     if (uvs) mesh.uvs.reserve(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i, ++vertex_count_) {
         std::array<double, 8> v{};
         if (auto bad = vertex(element, slots, v)) return bad;
-        mesh.positions.push_back(to_float(Vec3d{v[0], v[1], v[2]}));
+        const Vec3d place{v[0], v[1], v[2]};
+        if (floats)
+            mesh.positions.push_back(to_float(place));
+        else
+            in_file_.push_back(place);
         const Vec3d n{v[3], v[4], v[5]};
         // A zero normal of a vertex that faces may share has no better stand-in than some direction.
         if (normals)
@@ -209,7 +233,7 @@ PlyReader::Check PlyReader::polygon(const Item& who)
     outline_.clear();
     pieces_.clear();
     for (const std::int64_t index : indices_)
-        outline_.push_back(result_.mesh.positions[static_cast<std::size_t>(index)]);
+        outline_.push_back(place_of(static_cast<std::size_t>(index)));
     if (!triangulate(outline_, pieces_))
         return ImportFault{"over_limit",
                            who + ": a concave polygon of " + std::to_string(indices_.size()) +
@@ -305,6 +329,10 @@ ImportResult PlyReader::read()
     if (!values_.only_blanks_left())
         result_.notes.push_back(std::to_string(values_.bytes_left()) +
                                 " bytes after the last element were left out");
+    if (in_file_.empty())
+        choose_origin(result_.mesh);
+    else
+        set_positions(result_.mesh, in_file_);
     result_.format = "ply";
     return std::move(result_);
 }

@@ -1,5 +1,6 @@
 #include "renderer/io/read_stl.h"
 
+#include "renderer/geometry/mesh_frame.h"
 #include "renderer/io/import_bounds.h"
 #include "renderer/io/text.h"
 
@@ -7,6 +8,7 @@
 #include <bit>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,13 +28,14 @@ std::uint32_t word_at(std::string_view bytes, std::size_t offset)
 }
 
 // Vertices by position: open addressing with linear probing, never more than half full.
+template <typename T>
 class VertexTable {
 public:
-    explicit VertexTable(std::vector<Vec3f>& positions) : positions_(positions), slots_(1024, kEmpty) {}
+    explicit VertexTable(std::vector<Vec3<T>>& positions) : positions_(positions), slots_(1024, kEmpty) {}
 
-    std::uint32_t add(Vec3f p)
+    std::uint32_t add(Vec3<T> p)
     {
-        p = p + Vec3f{}; // -0 becomes 0
+        p = p + Vec3<T>{}; // -0 becomes 0
         std::size_t slot = slot_of(p);
         while (slots_[slot] != kEmpty && !(positions_[slots_[slot]] == p))
             slot = (slot + 1) & (slots_.size() - 1);
@@ -47,11 +50,13 @@ public:
 private:
     static constexpr std::uint32_t kEmpty = 0xffffffff;
 
-    std::size_t slot_of(Vec3f p) const
+    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+
+    std::size_t slot_of(Vec3<T> p) const
     {
         std::uint64_t hash = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            hash = (hash ^ std::bit_cast<std::uint32_t>(p[axis])) * 0x9e3779b97f4a7c15u;
+            hash = (hash ^ std::bit_cast<Bits>(p[axis])) * 0x9e3779b97f4a7c15u;
             hash ^= hash >> 29;
         }
         return hash & (slots_.size() - 1);
@@ -68,7 +73,7 @@ private:
         }
     }
 
-    std::vector<Vec3f>& positions_;
+    std::vector<Vec3<T>>& positions_;
     std::vector<std::uint32_t> slots_;
 };
 
@@ -118,6 +123,7 @@ public:
             }
         }
         if (!closed_) return ImportFault{"truncated", "the STL ends without endsolid: send the file whole"};
+        set_positions(result_.mesh, in_file_);
         result_.format = "stl";
         return std::move(result_);
     }
@@ -140,11 +146,11 @@ private:
         unexpected(word, wanted);
         return false;
     }
-    bool three_numbers(Vec3f& out)
+    bool three_numbers(Vec3d& out)
     {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::string_view word = words_.next();
-            const auto value = parse_float(word);
+            const auto value = parse_double(word);
             if (!value) {
                 unexpected(word, "a number");
                 return false;
@@ -155,13 +161,13 @@ private:
     }
     bool facet()
     {
-        Vec3f normal; // may be anything: it is not used
+        Vec3d normal; // may be anything: it is not used
         if (!expect("normal") || !three_numbers(normal) || !expect("outer") || !expect("loop")) return false;
         Triangle triangle{};
         for (std::uint32_t& index : triangle) {
-            Vec3f p;
+            Vec3d p;
             if (!expect("vertex") || !three_numbers(p)) return false;
-            if (!is_finite(p)) {
+            if (!is_finite(to_float(p))) {
                 fault_ = {"non_finite",
                           "line " + std::to_string(words_.line()) + ": a vertex of facet " +
                               std::to_string(result_.mesh.triangles.size()) + " is not finite"};
@@ -180,7 +186,8 @@ private:
     Words words_;
     const Limits& limits_;
     ImportedMesh result_;
-    VertexTable vertices_{result_.mesh.positions};
+    std::vector<Vec3d> in_file_;
+    VertexTable<double> vertices_{in_file_};
     ImportFault fault_;
     bool closed_ = false;
 };
@@ -209,7 +216,7 @@ ImportResult read_binary_stl(std::string_view bytes, const Limits& limits)
                                std::to_string(bytes.size())};
     if (facets > limits.triangles) return over_triangle_limit(facets, limits, false);
     ImportedMesh result;
-    VertexTable vertices(result.mesh.positions);
+    VertexTable<float> vertices(result.mesh.positions);
     result.mesh.triangles.resize(facets);
     for (std::uint32_t facet = 0; facet < facets; ++facet) {
         const std::size_t corners = kHeadBytes + facet * kFacetBytes + 12; // after the normal
@@ -225,6 +232,7 @@ ImportResult read_binary_stl(std::string_view bytes, const Limits& limits)
             result.mesh.triangles[facet][i] = vertices.add(p);
         }
     }
+    choose_origin(result.mesh);
     result.format = "stl";
     return result;
 }

@@ -98,6 +98,26 @@ std::optional<Vec3f> take_vec3(std::string_view& line)
     return Vec3f{*x, *y, *z};
 }
 
+std::optional<double> parse_double(std::string_view word)
+{
+    if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
+    const char* const end = word.data() + word.size();
+    double value = 0;
+    const auto parsed = std::from_chars(word.data(), end, value);
+    if (parsed.ptr != end || parsed.ec == std::errc::invalid_argument) return std::nullopt;
+    if (parsed.ec == std::errc()) return value;
+    const bool small = word.find("e-") != word.npos || word.find("E-") != word.npos;
+    return std::copysign(small ? 0 : std::numeric_limits<double>::infinity(), word.front() == '-' ? -1 : 1);
+}
+
+std::optional<Vec3d> take_point(std::string_view& line)
+{
+    const auto x = parse_double(take_word(line)), y = parse_double(take_word(line)),
+               z = parse_double(take_word(line));
+    if (!x || !y || !z) return std::nullopt;
+    return Vec3d{*x, *y, *z};
+}
+
 std::string_view Lines::take()
 {
     const std::size_t end = rest_.find('\n');

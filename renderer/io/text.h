@@ -36,6 +36,9 @@ std::optional<std::int64_t> parse_integer(std::string_view word);
 // Takes one number (three of them) off `line`; nothing if the next word is none.
 std::optional<float> take_float(std::string_view& line);
 std::optional<Vec3f> take_vec3(std::string_view& line);
+// The same in double, for places: meshes far from the origin need more digits than a float has.
+std::optional<double> parse_double(std::string_view word);
+std::optional<Vec3d> take_point(std::string_view& line);
 
 // Lines one after the other, counted from 1; a backslash at the end of a line joins the next one to it if
 // asked for.

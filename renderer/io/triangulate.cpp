@@ -11,14 +11,12 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-Vec3d newell_normal(std::span<const Vec3f> corners)
+Vec3d newell_normal(std::span<const Vec3d> corners)
 {
-    const Vec3d origin =
-        to_double(corners[0]); // sums of products of differences: far from the origin they would cancel
+    const Vec3d origin = corners[0]; // sums of products of differences: far from the origin they would cancel
     Vec3d sum{};
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Vec3d a = to_double(corners[i]) - origin,
-                    b = to_double(corners[(i + 1) % corners.size()]) - origin;
+        const Vec3d a = corners[i] - origin, b = corners[(i + 1) % corners.size()] - origin;
         sum = sum + cross(a, b);
     }
     return sum;
@@ -30,14 +28,14 @@ double turn(const Point& a, const Point& b, const Point& c)
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-std::vector<Point> project(std::span<const Vec3f> corners, Vec3d normal)
+std::vector<Point> project(std::span<const Vec3d> corners, Vec3d normal)
 {
     const Vec3d size = abs(normal);
     const std::size_t drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const bool flip = normal[drop] < 0;
     std::vector<Point> points(corners.size());
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Vec3d p = to_double(corners[i]);
+        const Vec3d p = corners[i];
         points[i] = {p[(drop + 1) % 3], p[(drop + 2) % 3]};
         if (flip) std::swap(points[i][0], points[i][1]);
     }
@@ -98,12 +96,12 @@ void clip_ears(const std::vector<Point>& p, std::vector<std::uint32_t>& ring, st
 }
 
 // The diagonal that leaves both halves wound like the whole.
-void split_quad(std::span<const Vec3f> corners, std::vector<Triangle>& out)
+void split_quad(std::span<const Vec3d> corners, std::vector<Triangle>& out)
 {
     const Vec3d normal = newell_normal(corners);
     const auto side = [&](std::size_t a, std::size_t b, std::size_t c) {
-        const Vec3d from = to_double(corners[a]);
-        return dot(cross(to_double(corners[b]) - from, to_double(corners[c]) - from), normal);
+        const Vec3d from = corners[a];
+        return dot(cross(corners[b] - from, corners[c] - from), normal);
     };
     if (side(0, 1, 2) >= 0 && side(0, 2, 3) >= 0) {
         out.push_back({0, 1, 2});
@@ -116,7 +114,7 @@ void split_quad(std::span<const Vec3f> corners, std::vector<Triangle>& out)
 
 } // namespace
 
-bool triangulate(std::span<const Vec3f> corners, std::vector<Triangle>& out)
+bool triangulate(std::span<const Vec3d> corners, std::vector<Triangle>& out)
 {
     if (corners.size() == 3) {
         out.push_back({0, 1, 2});
@@ -138,7 +136,7 @@ bool triangulate(std::span<const Vec3f> corners, std::vector<Triangle>& out)
     return true;
 }
 
-Vec3f polygon_normal(std::span<const Vec3f> corners)
+Vec3f polygon_normal(std::span<const Vec3d> corners)
 {
     const Vec3d normal = newell_normal(corners);
     if (!(max_component(abs(normal)) > 0) || !is_finite(normal)) return {0, 0, 1};

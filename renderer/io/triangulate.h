@@ -20,9 +20,9 @@ constexpr std::size_t kMostConcaveCorners = 1024;
 // Appends corners.size() - 2 triangles of indices into `corners` (three at least), wound as the polygon is. A
 // degenerate or self-crossing polygon gives as many, some of them degenerate. False, and nothing appended, if
 // it is concave and has too many corners.
-bool triangulate(std::span<const Vec3f> corners, std::vector<Triangle>& out);
+bool triangulate(std::span<const Vec3d> corners, std::vector<Triangle>& out);
 
 // Unit normal of the polygon; +z if it has no area.
-Vec3f polygon_normal(std::span<const Vec3f> corners);
+Vec3f polygon_normal(std::span<const Vec3d> corners);
 
 } // namespace renderer

@@ -15,6 +15,7 @@ constexpr std::uint64_t kFilmBytesPerPixel = 3 * 8 + 3 * 4 + 3 + (3 + 9 + 3 + 3)
 constexpr std::uint64_t kMeshBytesPerVertex = 12 + 12 + 8;
 constexpr std::uint64_t kMeshBytesPerTriangle = 12 + 2; // indices, material
 constexpr std::uint64_t kTreeBytesPerTriangle = 128;    // nodes and leaves
+constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle = 48;
 constexpr std::uint64_t kBytesPerObject = 512;
 
 // Parts that name the same triangles share a tree; one that names all has the mesh's own.
@@ -48,6 +49,9 @@ void add_mesh(Budget& budget, const MeshFacts& mesh)
     budget.triangles += mesh.triangles;
     budget.mesh_bytes += mesh.triangles * (kMeshBytesPerTriangle + kTreeBytesPerTriangle) +
                          mesh.vertices * kMeshBytesPerVertex;
+    if (mesh.has_residuals)
+        budget.mesh_bytes +=
+            mesh.triangles * kResidualBytesPerTriangle + mesh.vertices * kResidualBytesPerVertex;
 }
 
 Budget

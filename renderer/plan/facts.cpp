@@ -5,12 +5,12 @@ namespace renderer {
 
 namespace {
 
-Bounds3f part_bounds(const Mesh& mesh, const MeshPart& part)
+Bounds3d part_bounds(const Mesh& mesh, const MeshPart& part)
 {
-    Bounds3f bounds;
+    Bounds3d bounds;
     for (std::size_t i = 0; i < part.triangle_count; ++i)
         for (const std::uint32_t vertex : mesh.triangles[part.first_triangle + i])
-            bounds.extend(mesh.positions[vertex]);
+            bounds.extend(mesh.position(vertex) + mesh.origin);
     return bounds;
 }
 
@@ -29,7 +29,9 @@ MeshFacts facts_of(const Mesh& mesh)
 {
     const DefaultFloatingPoint whatever_the_caller_has;
     MeshFacts facts;
-    facts.bounds = mesh.bounds();
+    facts.bounds = mesh.bounds_in_file();
+    facts.origin = mesh.origin;
+    facts.has_residuals = !mesh.residuals.empty();
     facts.triangles = mesh.triangles.size();
     facts.vertices = mesh.positions.size();
     facts.has_normals = !mesh.normals.empty();

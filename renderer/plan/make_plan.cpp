@@ -2,7 +2,9 @@
 #include "renderer/plan/budget.h"
 #include "renderer/plan/check_description.h"
 #include "renderer/plan/choices.h"
+#include "renderer/plan/explain_numerics.h"
 #include "renderer/plan/plan.h"
+#include "renderer/plan/world_frame.h"
 
 namespace renderer {
 
@@ -21,7 +23,10 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
 
     Plan plan;
     plan.transport = TransportType::direct;
+    plan.world_origin = choose_world_origin(description, meshes);
+    plan.precision = corner_precision(description, meshes);
     plan.models = explain(scene, meshes);
+    explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);
     return plan;
 }
 

@@ -13,4 +13,11 @@ Affine3 placement(const ObjectDescription& object)
     return object.world_from_object;
 }
 
+Affine3 placement(const ObjectDescription& object, Vec3d own_origin, Vec3d world_origin)
+{
+    Affine3 placed = placement(object);
+    placed.translation = placed.vector(own_origin) + (placed.translation - world_origin);
+    return placed;
+}
+
 } // namespace renderer

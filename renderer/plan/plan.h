@@ -23,12 +23,14 @@ namespace renderer {
 // A named part of a mesh: its run of triangles, and the box around them.
 struct PartFacts {
     std::uint32_t first_triangle = 0, triangle_count = 0;
-    Bounds3f bounds{};
+    Bounds3d bounds{};
 };
 
-// What the plan must know of a mesh; cheap to take from an imported one.
+// What the plan must know of a mesh; cheap to take from an imported one. Bounds are in the file's coordinates.
 struct MeshFacts {
-    Bounds3f bounds;
+    Bounds3d bounds;
+    Vec3d origin{};             // of the frame that the mesh is kept in; zero: the file's
+    bool has_residuals = false; // its corners are more than floats
     std::uint64_t triangles = 0;
     std::uint64_t vertices = 0;
     bool has_normals = false;
@@ -51,6 +53,8 @@ AssumedScene assume_defaults(SceneDescription description, std::span<const MeshF
 
 struct Plan {
     TransportType transport = TransportType::direct;
+    Vec3d world_origin{};  // of the frame that is traced in, in the world: see world_frame.h
+    std::string precision; // of the meshes' corners: "float", "double" or "mixed"
     ModelReport models;
 };
 

@@ -11,7 +11,7 @@ Bounds3d around_origin(Vec3d half)
     return {{-half.x, -half.y, -half.z}, half};
 }
 
-const Bounds3f& bounds_of_part(const MeshFacts& facts, const std::string& part)
+const Bounds3d& bounds_of_part(const MeshFacts& facts, const std::string& part)
 {
     const auto named = part.empty() ? facts.parts.end() : facts.parts.find(part);
     return named == facts.parts.end() ? facts.bounds : named->second.bounds;
@@ -24,9 +24,7 @@ struct OwnBounds {
     {
         if (s.mesh >= meshes.size()) return {};
         const MeshFacts& facts = meshes[s.mesh];
-        const Bounds3f& b = bounds_of_part(facts, s.part);
-        if (b.empty()) return {};
-        return {to_double(b.lower), to_double(b.upper)};
+        return bounds_of_part(facts, s.part);
     }
     Bounds3d operator()(const RectangleShape& s) const
     {

@@ -36,11 +36,12 @@ Material from_mesh(const MeshMaterial& m)
 class Preparation {
 public:
     Preparation(const SceneDescription& scene,
+                Vec3d world_origin,
                 std::span<const SharedMesh> meshes,
                 BvhSplit split,
                 ThreadPool& pool,
                 const std::stop_token& stop)
-        : scene_(scene), meshes_(meshes), split_(split), pool_(pool), stop_(stop)
+        : scene_(scene), world_origin_(world_origin), meshes_(meshes), split_(split), pool_(pool), stop_(stop)
     {
         for (const NamedMaterial& material : scene.materials)
             bsdfs.push_back(make_bsdf(material.material));
@@ -81,7 +82,10 @@ private:
         const auto found = geometry_of(object.shape);
         if (!found) return false;
         const auto [shape, own] = *found;
-        const auto instance = Instance::place(shape, placement(object), object.visible_to_camera);
+        const auto instance =
+            Instance::place(shape,
+                            placement(object, own != nullptr ? own->origin : Vec3d{}, world_origin_),
+                            object.visible_to_camera);
         if (!instance)
             throw std::invalid_argument("prepare: an object's transform is singular; make_plan refuses it");
         instances.push_back(*instance);
@@ -155,6 +159,7 @@ private:
     }
 
     const SceneDescription& scene_;
+    Vec3d world_origin_;
     std::span<const SharedMesh> meshes_;
     BvhSplit split_;
     ThreadPool& pool_;
@@ -170,12 +175,31 @@ private:
 };
 
 // Largest coordinate over the scene's diagonal: how many digits the place of the scene costs.
-double coordinate_ratio(const Bounds3d& bounds)
+double coordinate_ratio(const Bounds3d& bounds, Vec3d world_origin)
 {
     if (bounds.empty()) return 0;
     const double diagonal = length(bounds.extent());
-    const double largest = std::max(max_component(abs(bounds.lower)), max_component(abs(bounds.upper)));
+    const double largest = std::max(max_component(abs(bounds.lower + world_origin)),
+                                    max_component(abs(bounds.upper + world_origin)));
     return diagonal > 0 ? largest / diagonal : 0;
+}
+
+// The camera and the lights in the frame that is traced in.
+CameraDescription moved(CameraDescription camera, Vec3d world_origin)
+{
+    if (!camera.aim_is_direction) camera.aim = camera.aim - camera.position;
+    camera.aim_is_direction = true;
+    camera.position = camera.position - world_origin;
+    return camera;
+}
+
+Light moved(Light light, Vec3d world_origin)
+{
+    if (auto* const point = std::get_if<PointLight>(&light))
+        point->position = point->position - world_origin;
+    else if (auto* const spot = std::get_if<SpotLight>(&light))
+        spot->position = spot->position - world_origin;
+    return light;
 }
 
 Rgb environment_of(const SceneDescription& scene)
@@ -188,7 +212,7 @@ Rgb environment_of(const SceneDescription& scene)
 } // namespace
 
 std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
-                                     const Plan&,
+                                     const Plan& plan,
                                      std::span<const std::shared_ptr<const PreparedMesh>> meshes,
                                      const RenderSettings& settings,
                                      ThreadPool& pool,
@@ -197,18 +221,20 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     const BvhSplit split = settings.acceleration.split;
-    Preparation made(description, meshes, split, pool, stop);
+    Preparation made(description, plan.world_origin, meshes, split, pool, stop);
     if (!made.run()) return nullptr;
     std::vector<PreparedLight> lights;
     for (const Light& light : description.lights)
-        lights.push_back(prepare_light(light));
+        lights.push_back(prepare_light(moved(light, plan.world_origin)));
 
     InstanceTree tree(std::move(made.instances), split, pool);
     made.geometry.bvh_bytes += tree.size_bytes();
-    made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds());
-    made.numerics.precision = "double";
+    made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds(), plan.world_origin);
+    made.numerics.precision = plan.precision;
     return std::make_shared<const Scene>(
-        Scene::Parts{Camera(description.camera.value(), settings.image.width_px, settings.image.height_px),
+        Scene::Parts{Camera(moved(description.camera.value(), plan.world_origin),
+                            settings.image.width_px,
+                            settings.image.height_px),
                      std::move(tree),
                      std::move(lights),
                      environment_of(description),

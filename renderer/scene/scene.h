@@ -3,7 +3,7 @@
 //
 // prepare() is the only way to get one; the description has been through assume_defaults and make_plan.
 //
-// Frame    world, in double; surfaces are turned so that their normals face the viewer.
+// Frame    the world's, in double, its origin moved to the plan's (plan/world_frame.h); surfaces are turned so that their normals face the viewer.
 // Threads  immutable: any number of threads may trace it.
 // Memory   holds its prepared meshes by shared ownership; they are the same ones that a cache holds.
 #pragma once

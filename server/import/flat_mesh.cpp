@@ -25,14 +25,17 @@ struct Head {
     Kind kind = Kind::mesh;
     std::uint64_t positions = 0, normals = 0, uvs = 0, triangles = 0, triangle_materials = 0;
     std::uint64_t text_bytes = 0;
+    std::uint64_t residuals = 0;
+    renderer::Vec3d origin{};
 };
-static_assert(std::is_trivially_copyable_v<Head> && sizeof(Head) == 64);
+static_assert(std::is_trivially_copyable_v<Head> && sizeof(Head) == 96);
 
 // The arrays, in the order of the file, each with the member of Head that counts it.
 template <typename Visit>
 void for_each_array(Head& head, auto& mesh, Visit visit)
 {
     visit(head.positions, mesh.positions);
+    visit(head.residuals, mesh.residuals);
     visit(head.normals, mesh.normals);
     visit(head.uvs, mesh.uvs);
     visit(head.triangles, mesh.triangles);
@@ -160,11 +163,13 @@ Head head_of(const ImportOutcome& outcome, std::uint64_t text_bytes)
 {
     Head head;
     head.text_bytes = text_bytes;
-    if (const auto* asset = std::get_if<ImportedAsset>(&outcome))
-        for_each_array(
-            head, asset->mesh, [](std::uint64_t& count, const auto& array) { count = array.size(); });
-    else
+    const auto* asset = std::get_if<ImportedAsset>(&outcome);
+    if (asset == nullptr) {
         head.kind = Kind::failure;
+        return head;
+    }
+    head.origin = asset->mesh.origin;
+    for_each_array(head, asset->mesh, [](std::uint64_t& count, const auto& array) { count = array.size(); });
     return head;
 }
 
@@ -195,6 +200,7 @@ ImportOutcome read_mesh(Head head, std::span<const std::byte> bytes, const rende
                              std::to_string(head.triangles) + " triangles, the limit is " +
                                  std::to_string(limits.triangles) + " (" + api::flag_of("triangles") + ")"};
     ImportedAsset asset;
+    asset.mesh.origin = head.origin;
     std::size_t at = sizeof(Head);
     for_each_array(head, asset.mesh, [&](std::uint64_t count, auto& array) {
         array.resize(count);

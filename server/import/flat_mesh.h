@@ -24,7 +24,7 @@ namespace server {
 
 // Changes whenever the flat form or what the importer makes of a file does: the head of the form has it, so that
 // a service never takes the output of another build's importer.
-constexpr std::uint32_t kImporterVersion = 2;
+constexpr std::uint32_t kImporterVersion = 3;
 
 struct ImportedAsset {
     renderer::Mesh mesh;

@@ -9,9 +9,8 @@ namespace {
 
 bool is_degenerate(const renderer::Mesh& mesh, const renderer::Triangle& triangle)
 {
-    const renderer::Vec3d a = to_double(mesh.positions[triangle[0]]);
-    const renderer::Vec3d area =
-        cross(to_double(mesh.positions[triangle[1]]) - a, to_double(mesh.positions[triangle[2]]) - a);
+    const renderer::Vec3d a = mesh.position(triangle[0]);
+    const renderer::Vec3d area = cross(mesh.position(triangle[1]) - a, mesh.position(triangle[2]) - a);
     return area == renderer::Vec3d{};
 }
 
@@ -28,7 +27,7 @@ api::AssetInfo::MeshInfo mesh_figures(const ImportedAsset& asset)
         std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
             return is_degenerate(mesh, triangle);
         }));
-    const renderer::Bounds3f bounds = mesh.bounds();
+    const renderer::Bounds3d bounds = mesh.bounds_in_file();
     for (std::size_t axis = 0; axis < 3; ++axis) {
         figures.lower[axis] = bounds.lower[axis];
         figures.upper[axis] = bounds.upper[axis];

@@ -267,7 +267,7 @@ TEST(SceneHit, CanBeLeftInASceneOfManySizes)
                     Affine3::scale({size, size, size}));
     const InstanceTree tree = objects.tree();
     int shadow_rays = 0;
-    for (int i = 0; i < 100000 / kThinning; ++i) {
+    for (int i = 0; i < 250000 / kThinning; ++i) {
         Vec3d from = random.direction() * 1e-2;
         from.y = std::abs(from.y);
         const Vec3d origin = at + from;
@@ -281,7 +281,7 @@ TEST(SceneHit, CanBeLeftInASceneOfManySizes)
             ASSERT_FALSE(tree.any_hit({offset_origin(hit->point, direction), direction})) << i;
         }
     }
-    EXPECT_GT(shadow_rays, 400000 / kThinning);
+    EXPECT_GT(shadow_rays, 1000000 / kThinning);
 }
 
 TEST(SceneHit, OfSpheresDisksAndRectanglesIsNeverHitAgain)
@@ -313,6 +313,10 @@ TEST(SceneHit, OfSpheresDisksAndRectanglesIsNeverHitAgain)
             if (i % 3 == 0 && !outwards) continue; // a sphere is met from inside
             ++departures;
             ASSERT_FALSE(tree.any_hit({offset_origin(hit->point, direction), direction})) << i << ' ' << k;
+            // And as far as some place there.
+            const Vec3d target = hit->point.position + direction * std::abs(radius * random.exponential(4));
+            const Vec3d origin_there = offset_origin(hit->point, target - hit->point.position);
+            ASSERT_FALSE(tree.any_hit({origin_there, target - origin_there, 0, 1})) << i << ' ' << k;
         }
     }
     EXPECT_GT(departures, 300000 / kThinning);

@@ -79,6 +79,31 @@ TEST(MeshBvh, LetsNoRayOutOfAClosedMeshFarFromTheOrigin)
     expect_closed(closed_sphere(random, center, 2, 2, 200, 200), center, 1, 50000);
 }
 
+TEST(MeshBvh, FindsTrianglesThatFloatsCannotTellApart)
+{
+    Random random(73);
+    for (const Mesh& mesh : renderer::mesh_rays::fine_meshes()) {
+        const MeshBvh bvh = build(mesh);
+        const auto& first = mesh.triangles[300]; // of the small ones, strewn within some 1e-2
+        const Vec3d near = mesh.position(first[0]);
+        int found = 0;
+        for (std::uint32_t i = 300; i < 600; ++i) {
+            const auto& t = mesh.triangles[i];
+            const Vec3d a = mesh.position(t[0]), b = mesh.position(t[1]), c = mesh.position(t[2]);
+            const Vec3d normal = normalize(cross(b - a, c - a));
+            const double size = length(b - a);
+            // From beside it: nothing fits in between.
+            const Ray ray{(a + b + c) / 3.0 + normal * (1e-3 * size), -normal};
+            const auto hit = bvh.closest_hit(ray);
+            ASSERT_TRUE(hit) << i;
+            found += hit->primitive == i;
+            ASSERT_LE(hit->t, 1.001e-3 * size);
+            ASSERT_LT(length(a - near), 1);
+        }
+        EXPECT_GT(found, 290);
+    }
+}
+
 TEST(MeshBvh, FindsEachCellOfAPlaneFromAMillionAway)
 {
     const Mesh mesh = grid(100, 100);

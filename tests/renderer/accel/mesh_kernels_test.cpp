@@ -86,6 +86,23 @@ TEST_P(EveryMeshKernel, FollowsRaysThatHaveNothingInCommon)
     EXPECT_GT(hits_, rays_ / 5);
 }
 
+TEST_P(EveryMeshKernel, FollowsRaysAmongCornersThatAreMoreThanFloats)
+{
+    Random random(36);
+    for (const Mesh& mesh : fine_meshes()) {
+        ASSERT_FALSE(mesh.residuals.empty());
+        const MeshBvh bvh = build(mesh);
+        for (int i = 0; i < 200 / kThinning; ++i) {
+            expect_as_brute_force(bvh, beam(random, mesh, kRun));
+            std::vector<Ray> rays;
+            while (rays.size() < 1 + random.below(kRun))
+                rays.push_back(random_ray(random, mesh));
+            expect_as_brute_force(bvh, rays);
+        }
+    }
+    EXPECT_GT(hits_, rays_ / 5);
+}
+
 TEST_P(EveryMeshKernel, PassesOverRaysThatAreNoRays)
 {
     Random random(33);
@@ -156,6 +173,114 @@ TEST_P(EveryMeshKernel, LetsNoRayOutOfAClosedMesh)
     expect_closed(GetParam(), closed_sphere(random, {0, 0, 0}, 1, 6, 16, 16), {0, 0, 0}, 0.2, 20000);
     const Vec3d far{148376, 1234, -223423}; // a float there is 1/64 wide
     expect_closed(GetParam(), closed_sphere(random, far, 2, 2, 200, 200), far, 1, 10000);
+}
+
+// Where the meshes of the next tests stand, all their coordinates whole numbers: at home, and where a float is 1/64
+// wide.
+constexpr Vec3d kStands[]{{0, 0, 0}, {148376, 1234, -223423}};
+
+Mesh moved(Mesh mesh, Vec3d by)
+{
+    for (auto& p : mesh.positions)
+        p = to_float(to_double(p) + by);
+    return mesh;
+}
+
+TEST_P(EveryMeshKernel, FindsEachCellOfAPlaneFromAMillionAway)
+{
+    Random random(37);
+    for (const Vec3d stand : kStands) {
+        const Mesh mesh = moved(grid(100, 100), stand);
+        const MeshBvh bvh = build(mesh);
+        MeshHit hits[kRun];
+        for (std::uint32_t first = 0; first + kRun <= mesh.triangles.size(); first += kRun) {
+            std::vector<Ray> rays;
+            Vec3d away = random.direction();
+            away.y = std::abs(away.y) + 0.05;
+            for (std::uint32_t i = first; i < first + kRun; ++i) {
+                const Triangle& v = mesh.triangles[i];
+                const Vec3d centroid =
+                    (mesh.position(v[0]) + mesh.position(v[1]) + mesh.position(v[2])) / 3.0;
+                const Vec3d origin = centroid + away * 1e6;
+                rays.push_back({origin, centroid - origin});
+            }
+            ASSERT_EQ(bvh.closest_hits(rays, hits, GetParam()), 0xffffu);
+            for (std::uint32_t i = 0; i < kRun; ++i) {
+                ASSERT_EQ(hits[i].primitive, first + i);
+                ASSERT_EQ(bvh.closest_hit(rays[i], GetParam())->primitive, first + i);
+            }
+        }
+    }
+}
+
+TEST_P(EveryMeshKernel, HasNoGapsAlongALattice)
+{
+    Random random(38);
+    for (const Vec3d stand : kStands) {
+        Mesh mesh = grid(40, 40);
+        for (auto& p : mesh.positions)
+            p.y = static_cast<float>(random.below(4));
+        const MeshBvh bvh = build(moved(mesh, stand));
+        for (int i = -38; i <= 38; ++i)
+            for (int j = -38; j + 16 <= 39; j += 16) {
+                std::vector<Ray> rays;
+                for (int k = 0; k < 16; ++k)
+                    rays.push_back(
+                        {stand + Vec3d{i * 0.5, 100, (j + k) * 0.5}, {0, -1, k % 2 == 0 ? 0.0 : -0.0}});
+                ASSERT_EQ(bvh.any_hits(rays, GetParam()), 0xffffu) << i << ' ' << j;
+                for (const Ray& ray : rays)
+                    ASSERT_TRUE(bvh.any_hit(ray, GetParam())) << i << ' ' << j;
+            }
+    }
+}
+
+// A diagonal that Moller-Trumbore in float was seen to let a ray slip through.
+TEST_P(EveryMeshKernel, HoldsAtTheDiagonalOfAQuad)
+{
+    Mesh quad;
+    quad.positions = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}};
+    quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+    for (const Vec3d stand : kStands) {
+        const Ray ray{stand + Vec3d{0, 0, 10}, {.30458447, .30458447, -.9024725}};
+        const auto hit = build(moved(quad, stand)).closest_hit(ray, GetParam());
+        ASSERT_TRUE(hit);
+        EXPECT_LT(length(ray.at(hit->t) - stand - Vec3d{3.375, 3.375, 0}), 1e-7);
+        const std::vector<Ray> run(kRun, ray);
+        EXPECT_EQ(build(moved(quad, stand)).any_hits(run, GetParam()), 0xffffu);
+    }
+}
+
+TEST_P(EveryMeshKernel, HoldsWhereSixMeet)
+{
+    Random random(39);
+    for (const Vec3d stand : kStands)
+        for (int i = 0; i < 300 / kThinning; ++i) {
+            Mesh fan;
+            fan.positions.push_back({});
+            for (int k = 0; k < 6; ++k) {
+                fan.positions.push_back(
+                    to_float({8 * std::cos(k * kPi / 3), 8 * std::sin(k * kPi / 3), random.uniform(-2, 2)}));
+                fan.triangles.push_back(
+                    {0, static_cast<std::uint32_t>(1 + k), static_cast<std::uint32_t>(1 + (k + 1) % 6)});
+            }
+            fan = moved(fan, stand);
+            const MeshBvh bvh = build(fan);
+            const Vec3d hub = fan.position(0);
+            std::vector<Ray> rays;
+            for (unsigned k = 0; k < kRun; ++k) {
+                const Vec3d origin = hub + Vec3d{random.uniform(-8, 8), random.uniform(-8, 8), 32};
+                rays.push_back({origin, hub - origin});
+            }
+            ASSERT_EQ(bvh.any_hits(rays, GetParam()), 0xffffu);
+            for (Ray& ray : rays) {
+                int crossings = 0;
+                while (const auto hit = bvh.closest_hit(ray, GetParam())) {
+                    ASSERT_LT(++crossings, 7);
+                    ray.t_min = hit->t; // what lies within rounding of it is the same crossing
+                }
+                ASSERT_EQ(crossings, 1);
+            }
+        }
 }
 
 TEST(MeshKernels, HaveAPortableOneToFallBackOn)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "renderer/accel/mesh_bvh.h"
+#include "renderer/geometry/mesh_frame.h"
 #include "tests/renderer/accel/random_scenes.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,7 @@ inline Ray random_ray(Random& random, const Mesh& mesh)
 {
     const auto corner = [&] {
         const auto& v = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
-        return to_double(mesh.positions[v[random.below(3)]]);
+        return mesh.position(v[random.below(3)]);
     };
     const auto box = mesh.bounds();
     const Vec3d low = to_double(box.lower), high = to_double(box.upper);
@@ -90,6 +91,32 @@ inline std::vector<Mesh> ten_meshes()
         doubled.triangles.push_back({t[0], t[1], t[2]});
     for (const auto& t : once)
         doubled.triangles.push_back({t[0], t[1], t[0]});
+    return meshes;
+}
+
+// What only doubles tell apart: small triangles in a mesh a million million times their size, strewn and closed, with
+// residuals.
+inline std::vector<Mesh> fine_meshes()
+{
+    Random random(20);
+    std::vector<Mesh> meshes;
+    for (const double small : {1e-2, 1e-5, 1e-7}) {
+        Mesh mesh = soup(random, 300, 1e5, 1e5);
+        std::vector<Vec3d> places;
+        for (const Vec3f& p : mesh.positions)
+            places.push_back(to_double(p));
+        const auto add = [&](const Mesh& part, Vec3d at) {
+            const auto first = static_cast<std::uint32_t>(places.size());
+            for (const Vec3f& p : part.positions)
+                places.push_back(to_double(p) * small + at);
+            for (const Triangle& t : part.triangles)
+                mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        };
+        add(soup(random, 300, 1, 0.3), {51234.56789, -71234.56789, 30303.030303});
+        add(closed_sphere(random, {0, 0, 0}, 1, 2, 16, 16), {-80123.123456, 40404.040404, 98765.4321});
+        set_positions(mesh, places);
+        meshes.push_back(std::move(mesh));
+    }
     return meshes;
 }
 

@@ -54,7 +54,8 @@ TEST(TrianglePoint, IsNeverHitAgainByARayThatLeavesIt)
         const auto hit = intersect_watertight(ray, to_double(a), to_double(b), to_double(c));
         if (!hit) continue;
         ++left;
-        const SurfacePoint point = triangle_point(a, b, c, hit->barycentrics);
+        const SurfacePoint point =
+            triangle_point(to_double(a), to_double(b), to_double(c), hit->barycentrics);
         for (int k = 0; k < 1000; ++k) {
             Ray next;
             next.direction = random.direction();
@@ -80,7 +81,7 @@ TEST(TrianglePoint, LiesWithinItsErrorOfThePlane)
         const Vec3f a = to_float(random.direction() * scale), b = to_float(random.direction() * scale),
                     c = to_float(random.direction() * scale);
         const double u = random.uniform(), v = random.uniform() * (1 - u);
-        const SurfacePoint p = triangle_point(a, b, c, {1 - u - v, u, v});
+        const SurfacePoint p = triangle_point(to_double(a), to_double(b), to_double(c), {1 - u - v, u, v});
         // Distance to the plane in long double, against the bound along the normal.
         const Vec3d ab = to_double(b) - to_double(a), ac = to_double(c) - to_double(a);
         const auto term = [](double x, double y, double z, double w) {

@@ -8,16 +8,15 @@
 namespace {
 
 using renderer::Vec3d;
-using renderer::Vec3f;
 
-Vec3d area_of(const std::vector<Vec3f>& polygon, const renderer::Triangle& t)
+Vec3d area_of(const std::vector<Vec3d>& polygon, const renderer::Triangle& t)
 {
-    const Vec3d a = to_double(polygon[t[0]]);
-    return cross(to_double(polygon[t[1]]) - a, to_double(polygon[t[2]]) - a) / 2.0;
+    const Vec3d a = polygon[t[0]];
+    return cross(polygon[t[1]] - a, polygon[t[2]] - a) / 2.0;
 }
 
 // Covers the polygon exactly: every triangle wound as the whole, the areas adding up to the outline's.
-void expect_covered(const std::vector<Vec3f>& polygon, double area)
+void expect_covered(const std::vector<Vec3d>& polygon, double area)
 {
     std::vector<renderer::Triangle> triangles;
     ASSERT_TRUE(renderer::triangulate(polygon, triangles));
@@ -32,22 +31,21 @@ void expect_covered(const std::vector<Vec3f>& polygon, double area)
     EXPECT_NEAR(sum, area, 1e-5 * area);
 }
 
-std::vector<Vec3f> star(int points, double inner)
+std::vector<Vec3d> star(int points, double inner)
 {
-    std::vector<Vec3f> corners;
+    std::vector<Vec3d> corners;
     for (int i = 0; i < 2 * points; ++i) {
         const double angle = 3.14159265358979 * i / points, radius = i % 2 ? inner : 1;
-        corners.push_back(
-            {static_cast<float>(radius * std::cos(angle)), 0, static_cast<float>(radius * std::sin(angle))});
+        corners.push_back({radius * std::cos(angle), 0, radius * std::sin(angle)});
     }
     return corners;
 }
 
 TEST(Triangulate, SplitsADartAlongTheDiagonalInsideIt)
 {
-    const std::vector<Vec3f> dart{{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {0.5f, 1, 0}};
+    const std::vector<Vec3d> dart{{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {0.5f, 1, 0}};
     for (std::size_t turn = 0; turn < 4; ++turn) {
-        std::vector<Vec3f> turned;
+        std::vector<Vec3d> turned;
         for (std::size_t i = 0; i < 4; ++i)
             turned.push_back(dart[(i + turn) % 4]);
         expect_covered(turned, 1.5);
@@ -73,10 +71,10 @@ TEST(Triangulate, TakesHugeConvexPolygonsAndRefusesHugeConcaveOnes)
 TEST(Triangulate, GivesAsManyTrianglesForDegeneratePolygons)
 {
     std::vector<renderer::Triangle> triangles;
-    EXPECT_TRUE(renderer::triangulate(std::vector<Vec3f>(7), triangles));
+    EXPECT_TRUE(renderer::triangulate(std::vector<Vec3d>(7), triangles));
     EXPECT_EQ(triangles.size(), 5u);
     triangles.clear();
-    const std::vector<Vec3f> bow{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0.5f, 0}};
+    const std::vector<Vec3d> bow{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0.5f, 0}};
     EXPECT_TRUE(renderer::triangulate(bow, triangles));
     EXPECT_EQ(triangles.size(), 3u);
 }

@@ -210,6 +210,17 @@ TEST(MakePlan, RefusesFieldsOfViewThatAreNone)
     }
 }
 
+TEST(MakePlan, RefusesPicturesWithoutPixels)
+{
+    for (const bool flat : {false, true}) {
+        RenderSettings settings;
+        (flat ? settings.image.height_px : settings.image.width_px) = 0;
+        const auto faults = faults_of(one_mesh(), {cube_facts()}, settings);
+        ASSERT_EQ(faults.size(), 1u);
+        EXPECT_EQ(faults[0].pointer, flat ? "/image/height" : "/image/width");
+    }
+}
+
 TEST(MakePlan, RefusesWhatIsOverALimitWithTheNumber)
 {
     MeshFacts big = cube_facts();

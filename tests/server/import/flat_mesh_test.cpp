@@ -19,7 +19,9 @@ ImportedAsset tetrahedron()
     asset.format = "obj";
     asset.notes = {"a note", "zwölf Boxkämpfer"};
     renderer::Mesh& mesh = asset.mesh;
+    mesh.origin = {1e9, -0.125, 3};
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.residuals = {{0, 0, 0}, {1e-9f, 0, 0}, {0, -2e-8f, 0}, {0, 0, 0}};
     mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
     mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
     mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -46,7 +48,7 @@ std::string code_of(const ImportOutcome& outcome)
 }
 
 // The count at `offset` of the head: 16 positions, 24 normals, 32 uvs, 40 triangles, 48 materials, 56 text
-// bytes.
+// bytes, 64 residuals.
 Bytes with_count(Bytes bytes, std::size_t offset, std::uint64_t count)
 {
     std::memcpy(bytes.data() + offset, &count, sizeof count);
@@ -61,7 +63,9 @@ TEST(FlatMesh, GivesBackWhatWasWritten)
     const ImportedAsset before = tetrahedron();
     EXPECT_EQ(asset.format, before.format);
     EXPECT_EQ(asset.notes, before.notes);
+    EXPECT_EQ(asset.mesh.origin, before.mesh.origin);
     EXPECT_EQ(asset.mesh.positions, before.mesh.positions);
+    EXPECT_EQ(asset.mesh.residuals, before.mesh.residuals);
     EXPECT_EQ(asset.mesh.normals, before.mesh.normals);
     EXPECT_EQ(asset.mesh.uvs, before.mesh.uvs);
     EXPECT_EQ(asset.mesh.triangles, before.mesh.triangles);
@@ -132,7 +136,7 @@ TEST(FlatMesh, SurvivesRandomBytes)
 TEST(FlatMesh, RefusesCountsThatOverflow)
 {
     const Bytes whole = written(tetrahedron());
-    for (std::size_t offset = 16; offset < 64; offset += 8)
+    for (std::size_t offset = 16; offset < 72; offset += 8)
         for (const std::uint64_t count :
              {~0ull, 1ull << 63, (1ull << 62) + 1, 0x1555555555555556ull, 1ull << 32})
             ASSERT_EQ(code_of(server::read_flat(with_count(whole, offset, count), {})), "import_crashed")
