@@ -1,5 +1,6 @@
 #include "renderer/plan/placement.h"
 
+#include <algorithm>
 #include <variant>
 
 namespace renderer {
@@ -9,7 +10,10 @@ Affine3 placement(const ObjectDescription& object)
     if (const auto* const box = std::get_if<BoxShape>(&object.shape))
         return object.world_from_object * Affine3::scale(box->size_m);
     if (const auto* const rectangle = std::get_if<RectangleShape>(&object.shape))
-        return object.world_from_object * Affine3::scale({rectangle->width_m, rectangle->height_m, 1});
+        return object.world_from_object *
+               Affine3::scale({rectangle->width_m,
+                               rectangle->height_m,
+                               std::max(rectangle->width_m, rectangle->height_m)}); // as it has no depth
     return object.world_from_object;
 }
 
