@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <type_traits>
 
 namespace renderer {
 
@@ -76,12 +75,22 @@ Corner<T> shear(const WatertightRay<T>& ray, Vec3<T> v)
 }
 
 // Twice the signed area of the origin and the edge from p to q. The two triangles at an edge get exactly
-// opposite values; a sign is never wrong, since rounding is monotone: at worst the value is 0, which counts
-// as inside.
+// opposite values; a sign is never wrong, since rounding is monotone: at worst the value is 0.
 template <typename T>
 T edge(const Corner<T>& p, const Corner<T>& q)
 {
     return q.x * p.y - q.y * p.x;
+}
+
+// The same where that is 0, from the exact products: 0 counts as inside, so it must be no other value rounded. Else a
+// triangle that is small for its distance from the ray is hit from far beside it, two of its edges being 0.
+inline float exact_edge(const Corner<float>& p, const Corner<float>& q)
+{
+    return static_cast<float>(double{q.x} * double{p.y} - double{q.y} * double{p.x});
+}
+inline double exact_edge(const Corner<double>& p, const Corner<double>& q)
+{
+    return std::fma(q.x, p.y, -(q.x * p.y)) - std::fma(q.y, p.x, -(q.y * p.x)); // the products' rests
 }
 
 template <typename T>
@@ -148,14 +157,9 @@ intersect_watertight(const WatertightRay<T>& ray, T t_min, T t_max, Vec3<T> a, V
     namespace wt = watertight;
     const wt::Corner<T> pa = wt::shear(ray, a), pb = wt::shear(ray, b), pc = wt::shear(ray, c);
     Vec3<T> e{wt::edge(pb, pc), wt::edge(pc, pa), wt::edge(pa, pb)};
-    if constexpr (std::is_same_v<T, float>) {
-        if (e.x == 0 || e.y == 0 || e.z == 0) { // in double the products are exact
-            const auto exact = [](const wt::Corner<T>& p, const wt::Corner<T>& q) {
-                return static_cast<float>(double{q.x} * double{p.y} - double{q.y} * double{p.x});
-            };
-            e = {exact(pb, pc), exact(pc, pa), exact(pa, pb)};
-        }
-    }
+    if (e.x == 0) e.x = wt::exact_edge(pb, pc);
+    if (e.y == 0) e.y = wt::exact_edge(pc, pa);
+    if (e.z == 0) e.z = wt::exact_edge(pa, pb);
     if ((e.x < 0 || e.y < 0 || e.z < 0) && (e.x > 0 || e.y > 0 || e.z > 0)) return std::nullopt;
     const T det = e.x + e.y + e.z;
     if (det == 0) return std::nullopt;

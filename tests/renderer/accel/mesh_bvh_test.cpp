@@ -92,12 +92,12 @@ TEST(MeshBvh, FindsTrianglesThatFloatsCannotTellApart)
             const Vec3d a = mesh.position(t[0]), b = mesh.position(t[1]), c = mesh.position(t[2]);
             const Vec3d normal = normalize(cross(b - a, c - a));
             const double size = length(b - a);
-            // From beside it: nothing fits in between.
-            const Ray ray{(a + b + c) / 3.0 + normal * (1e-3 * size), -normal};
+            // From close beside it: one in a hundred has another in between.
+            const Ray ray{(a + b + c) / 3.0 + normal * (0.02 * size), -normal};
             const auto hit = bvh.closest_hit(ray);
             ASSERT_TRUE(hit) << i;
             found += hit->primitive == i;
-            ASSERT_LE(hit->t, 1.001e-3 * size);
+            ASSERT_LE(hit->t, 0.02 * size + 1e-10);
             ASSERT_LT(length(a - near), 1);
         }
         EXPECT_GT(found, 290);

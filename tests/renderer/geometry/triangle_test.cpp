@@ -191,6 +191,23 @@ TEST(Triangle, ThatIsThinIsHitWhereItIs)
     EXPECT_GT(hits, 1000);
 }
 
+// Seen from afar its corners differ in their last bits only: edge values that round to 0 must not make a hit.
+TEST(Triangle, ThatIsSmallIsNotHitFromFarBesideIt)
+{
+    Random random(16);
+    for (int i = 0; i < 200000 / kThinning; ++i) {
+        const double away = std::pow(10, random.uniform(6, 13));
+        const Vec3d a = random.direction() * 1e-3, b = random.direction() * 1e-3,
+                    c = random.direction() * 1e-3;
+        Ray ray;
+        ray.origin = random.direction() * away;
+        ray.direction = random.direction() * away - ray.origin;
+        const auto hit = intersect_watertight(ray, a, b, c);
+        if (!hit) continue;
+        ASSERT_LT(length(ray.at(hit->t)), 1e-2 + 1e-14 * away) << i;
+    }
+}
+
 TEST(Triangle, KeepsItsRange)
 {
     const Vec3d a{-1, -1, 0}, b{1, -1, 0}, c{0, 1, 0};
