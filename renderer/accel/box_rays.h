@@ -14,20 +14,22 @@
 namespace renderer {
 
 struct BoxRays {
-    static constexpr unsigned kRays = 16;
+    static constexpr unsigned kRays = 64, kStep = 8; // lanes come in steps
     template <typename T>
     using Lanes = T[kRays];
 
     alignas(64) Lanes<double> near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
     alignas(64) Lanes<double> begin;
     alignas(64) Lanes<double> end; // what is behind it does not matter; -infinity: nor does the ray
-    std::uint32_t rays = 0;        // bit i: ray i is there and traceable
+    std::uint64_t rays = 0;        // bit i: ray i is there and traceable
+    unsigned lanes = 0;            // in use, a multiple of kStep
 
     // At most kRays rays; `bounds` of all boxes to come.
     BoxRays(std::span<const Ray> given, const Bounds3d& bounds)
     {
         const double size = std::max(max_abs(bounds.lower), max_abs(bounds.upper));
-        for (unsigned i = 0; i < kRays; ++i) {
+        lanes = (static_cast<unsigned>(given.size()) + kStep - 1) / kStep * kStep;
+        for (unsigned i = 0; i < lanes; ++i) {
             const bool traceable = i < given.size() && is_traceable(given[i]);
             const Ray ray = traceable ? given[i] : Ray{};
             const SlabRay<double> slabs(
@@ -40,7 +42,7 @@ struct BoxRays {
             }
             begin[i] = ray.t_min;
             end[i] = traceable ? ray.t_max : -std::numeric_limits<double>::infinity();
-            if (traceable) rays |= 1u << i;
+            if (traceable) rays |= std::uint64_t{1} << i;
         }
     }
 };

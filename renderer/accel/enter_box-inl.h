@@ -14,12 +14,12 @@ namespace renderer::HWY_NAMESPACE {
 namespace {
 
 // As SlabRay::meets, operation for operation.
-inline std::uint32_t enter_box(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest)
+inline std::uint64_t enter_box(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest)
 {
-    const hn::CappedTag<double, BoxRays::kRays> d;
-    std::uint32_t inside = 0;
+    const hn::CappedTag<double, BoxRays::kStep> d;
+    std::uint64_t inside = 0;
     auto least = hn::Set(d, std::numeric_limits<double>::infinity());
-    for (unsigned i = 0; i < BoxRays::kRays; i += static_cast<unsigned>(hn::MaxLanes(d))) {
+    for (unsigned i = 0; i < rays.lanes; i += static_cast<unsigned>(hn::MaxLanes(d))) {
         auto entry = hn::Load(d, rays.begin + i), exit = hn::Load(d, rays.end + i);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto near_inverse = hn::Load(d, rays.near_inverse[axis] + i);
@@ -36,7 +36,7 @@ inline std::uint32_t enter_box(const BoxRays& rays, const Vec3d& lower, const Ve
             exit = hn::IfThenElse(hn::Lt(t_far, exit), t_far, exit);
         }
         const auto met = hn::Le(entry, exit);
-        inside |= bits_of(d, met) << i;
+        inside |= std::uint64_t{bits_of(d, met)} << i;
         least = hn::Min(least, hn::IfThenElse(met, entry, least));
     }
     nearest = hn::GetLane(hn::MinOfLanes(d, least));

@@ -121,32 +121,32 @@ bool Instance::any_hit(const Ray& world_ray) const
                       geometry_);
 }
 
-std::uint32_t Instance::closest_hits(std::span<const Ray> world_rays, Candidate* hits) const
+std::uint64_t Instance::closest_hits(std::span<const Ray> world_rays, Candidate* hits) const
 {
-    std::uint32_t found = 0;
+    std::uint64_t found = 0;
     if (const auto* mesh = std::get_if<MeshGeometry>(&geometry_)) {
         Ray rays[kMostRays];
         MeshHit met[kMostRays];
         for (std::size_t i = 0; i < world_rays.size(); ++i)
             rays[i] = to_object(world_rays[i]);
         found = mesh->bvh->closest_hits({rays, world_rays.size()}, met);
-        for (std::uint32_t left = found; left != 0; left &= left - 1) {
-            const MeshHit& hit = met[__builtin_ctz(left)];
-            hits[__builtin_ctz(left)] = {hit.t, hit.primitive, hit.barycentrics};
+        for (std::uint64_t left = found; left != 0; left &= left - 1) {
+            const MeshHit& hit = met[__builtin_ctzll(left)];
+            hits[__builtin_ctzll(left)] = {hit.t, hit.primitive, hit.barycentrics};
         }
         return found;
     }
     for (std::size_t i = 0; i < world_rays.size(); ++i)
         if (const std::optional<Candidate> hit = closest_hit(world_rays[i])) {
             hits[i] = *hit;
-            found |= 1u << i;
+            found |= std::uint64_t{1} << i;
         }
     return found;
 }
 
-std::uint32_t Instance::any_hits(std::span<const Ray> world_rays) const
+std::uint64_t Instance::any_hits(std::span<const Ray> world_rays) const
 {
-    std::uint32_t found = 0;
+    std::uint64_t found = 0;
     if (const auto* mesh = std::get_if<MeshGeometry>(&geometry_)) {
         Ray rays[kMostRays];
         for (std::size_t i = 0; i < world_rays.size(); ++i)
@@ -154,7 +154,7 @@ std::uint32_t Instance::any_hits(std::span<const Ray> world_rays) const
         return mesh->bvh->any_hits({rays, world_rays.size()});
     }
     for (std::size_t i = 0; i < world_rays.size(); ++i)
-        if (any_hit(world_rays[i])) found |= 1u << i;
+        if (any_hit(world_rays[i])) found |= std::uint64_t{1} << i;
     return found;
 }
 

@@ -58,8 +58,8 @@ public:
     bool any_hit(const Ray& world_ray) const;
     // The same for a run of at most kMostRays rays: bit i of the result is set where ray i hit, and hits[i] says
     // where.
-    std::uint32_t closest_hits(std::span<const Ray> world_rays, Candidate* hits) const;
-    std::uint32_t any_hits(std::span<const Ray> world_rays) const;
+    std::uint64_t closest_hits(std::span<const Ray> world_rays, Candidate* hits) const;
+    std::uint64_t any_hits(std::span<const Ray> world_rays) const;
     static constexpr unsigned kMostRays = MeshKernels::kMostRays;
     // `instance` of the result is left to the caller.
     SceneHit resolve(const Ray& world_ray, const Candidate& candidate) const;

@@ -122,7 +122,7 @@ public:
     {
         struct Waiting {
             const BvhNode<double>* node;
-            std::uint32_t rays;
+            std::uint64_t rays;
             double entry;
         };
         if (tree_.bvh_.empty()) return;
@@ -150,12 +150,12 @@ public:
         }
     }
 
-    std::uint32_t found() const { return found_; }
+    std::uint64_t found() const { return found_; }
     const Best& best(std::size_t ray) const { return best_[ray]; }
 
 private:
     // `rays` may be done by now, all the same: what they find is no better.
-    void ask(std::uint32_t number, std::uint32_t rays)
+    void ask(std::uint32_t number, std::uint64_t rays)
     {
         const Instance& instance = tree_.instances_[number];
         if (kAnyHit) rays &= ~found_;
@@ -164,7 +164,7 @@ private:
         unsigned from[kMostRays];
         unsigned count = 0;
         for (; rays != 0; rays &= rays - 1) {
-            const auto ray = static_cast<unsigned>(__builtin_ctz(rays));
+            const auto ray = static_cast<unsigned>(__builtin_ctzll(rays));
             asking[count] = rays_[ray];
             // Past the best hit, ties still seen.
             if ((found_ >> ray & 1) != 0)
@@ -174,19 +174,19 @@ private:
             from[count++] = ray;
         }
         if (kAnyHit) {
-            for (std::uint32_t met = instance.any_hits({asking, count}); met != 0; met &= met - 1) {
-                const unsigned ray = from[__builtin_ctz(met)];
-                found_ |= 1u << ray;
+            for (std::uint64_t met = instance.any_hits({asking, count}); met != 0; met &= met - 1) {
+                const unsigned ray = from[__builtin_ctzll(met)];
+                found_ |= std::uint64_t{1} << ray;
                 boxes_.end[ray] = -std::numeric_limits<double>::infinity();
             }
             return;
         }
         Instance::Candidate hits[kMostRays];
-        for (std::uint32_t met = instance.closest_hits({asking, count}, hits); met != 0; met &= met - 1) {
-            const auto i = static_cast<unsigned>(__builtin_ctz(met));
+        for (std::uint64_t met = instance.closest_hits({asking, count}, hits); met != 0; met &= met - 1) {
+            const auto i = static_cast<unsigned>(__builtin_ctzll(met));
             Best& best = best_[from[i]];
             if (!best.improve(number, hits[i])) continue;
-            found_ |= 1u << from[i];
+            found_ |= std::uint64_t{1} << from[i];
             boxes_.end[from[i]] = hits[i].t;
         }
     }
@@ -196,11 +196,11 @@ private:
     RayKind kind_;
     const MeshKernels& kernels_ = mesh_kernels();
     BoxRays boxes_;
-    std::uint32_t found_ = 0;
+    std::uint64_t found_ = 0;
     Best best_[kMostRays];
 };
 
-std::uint32_t
+std::uint64_t
 InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind) const
 {
     if (bvh_.order.size() == 1) {
@@ -208,23 +208,23 @@ InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, 
         const Instance& only = instances_[number];
         if (!only.visible_to(kind)) return 0;
         Instance::Candidate found[kMostRays];
-        const std::uint32_t met = only.closest_hits(rays, found);
-        for (std::uint32_t left = met; left != 0; left &= left - 1) {
-            const auto i = static_cast<unsigned>(__builtin_ctz(left));
+        const std::uint64_t met = only.closest_hits(rays, found);
+        for (std::uint64_t left = met; left != 0; left &= left - 1) {
+            const auto i = static_cast<unsigned>(__builtin_ctzll(left));
             hits[i] = resolve(rays[i], {true, number, found[i]});
         }
         return met;
     }
     RunWalk<false> run(*this, rays, kind);
     run.walk();
-    for (std::uint32_t left = run.found(); left != 0; left &= left - 1) {
-        const auto i = static_cast<unsigned>(__builtin_ctz(left));
+    for (std::uint64_t left = run.found(); left != 0; left &= left - 1) {
+        const auto i = static_cast<unsigned>(__builtin_ctzll(left));
         hits[i] = resolve(rays[i], run.best(i));
     }
     return run.found();
 }
 
-std::uint32_t InstanceTree::any_hits(std::span<const Ray> rays, RayKind kind) const
+std::uint64_t InstanceTree::any_hits(std::span<const Ray> rays, RayKind kind) const
 {
     if (bvh_.order.size() == 1) {
         const Instance& only = instances_[bvh_.order[0]];

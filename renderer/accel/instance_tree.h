@@ -24,9 +24,9 @@ public:
     bool any_hit(const Ray& ray, RayKind kind = RayKind::other) const;
     // The same for a run of at most kMostRays rays, best of such as run alike: bit i of the result is set where
     // ray i hit, and hits[i] says where.
-    std::uint32_t
+    std::uint64_t
     closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind = RayKind::other) const;
-    std::uint32_t any_hits(std::span<const Ray> rays, RayKind kind = RayKind::other) const;
+    std::uint64_t any_hits(std::span<const Ray> rays, RayKind kind = RayKind::other) const;
     static constexpr unsigned kMostRays = Instance::kMostRays;
     // The same answer from every instance in turn: for tests and for measuring.
     std::optional<SceneHit> closest_hit_brute_force(const Ray& ray, RayKind kind = RayKind::other) const;

@@ -36,13 +36,13 @@ public:
     std::optional<MeshHit> closest_hit(const Ray& ray, const MeshKernels& kernels = mesh_kernels()) const;
     bool any_hit(const Ray& ray, const MeshKernels& kernels = mesh_kernels()) const;
     // The same for MeshKernels::kMostRays rays at most; see there.
-    std::uint32_t closest_hits(std::span<const Ray> rays,
+    std::uint64_t closest_hits(std::span<const Ray> rays,
                                std::span<MeshHit> hits,
                                const MeshKernels& kernels = mesh_kernels()) const
     {
         return kernels.closest_hits(view(), rays.data(), static_cast<unsigned>(rays.size()), hits.data());
     }
-    std::uint32_t any_hits(std::span<const Ray> rays, const MeshKernels& kernels = mesh_kernels()) const
+    std::uint64_t any_hits(std::span<const Ray> rays, const MeshKernels& kernels = mesh_kernels()) const
     {
         return kernels.any_hits(view(), rays.data(), static_cast<unsigned>(rays.size()));
     }

@@ -1,6 +1,8 @@
 #include "renderer/accel/mesh_kernels.h"
 
+#include "renderer/accel/exact_ray.h"
 #include "renderer/accel/exact_test.h"
+#include "renderer/accel/ray_fan.h"
 #include "renderer/accel/ray_run.h"
 
 #include <algorithm>
@@ -26,6 +28,7 @@
 
 #include "renderer/accel/enter_box-inl.h"
 #include "renderer/accel/follow_apart-inl.h"
+#include "renderer/accel/follow_fan-inl.h"
 #include "renderer/accel/follow_together-inl.h"
 // clang-format on
 
@@ -34,7 +37,7 @@ namespace renderer::HWY_NAMESPACE {
 namespace {
 
 template <bool kAnyHit>
-std::uint32_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+std::uint32_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
     RayRun run;
     const Following how = prepare_run(run, mesh, rays, count);
@@ -54,25 +57,51 @@ std::uint32_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshH
     return found;
 }
 
+template <bool kAnyHit>
+bool trace_fan(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found)
+{
+    RayFan fan;
+    if (!prepare_fan(fan, mesh, rays, count, kAnyHit)) return false;
+    found = FanWalk<kAnyHit>(mesh, fan, rays, hits).walk();
+    return true;
+}
+
+// All as one fan, or run by run.
+template <bool kAnyHit>
+std::uint64_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+{
+    if (mesh.nodes == nullptr) return 0;
+    std::uint64_t found = 0;
+    if (trace_fan<kAnyHit>(mesh, rays, count, hits, found)) return found;
+    for (unsigned first = 0; first < count; first += RayRun::kRays) {
+        const unsigned some = std::min(RayRun::kRays, count - first);
+        std::uint64_t in_run = 0;
+        if (some == count || !trace_fan<kAnyHit>(mesh, rays + first, some, hits + first, in_run))
+            in_run = trace_run<kAnyHit>(mesh, rays + first, some, hits + first);
+        found |= in_run << first;
+    }
+    return found;
+}
+
 bool closest_hit(const MeshView& mesh, const Ray& ray, MeshHit& hit)
 {
-    return trace<false>(mesh, &ray, 1, &hit) != 0;
+    return trace_run<false>(mesh, &ray, 1, &hit) != 0;
 }
 
 bool any_hit(const MeshView& mesh, const Ray& ray)
 {
     MeshHit hit;
-    return trace<true>(mesh, &ray, 1, &hit) != 0;
+    return trace_run<true>(mesh, &ray, 1, &hit) != 0;
 }
 
-std::uint32_t closest_hits(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+std::uint64_t closest_hits(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
     return trace<false>(mesh, rays, count, hits);
 }
 
-std::uint32_t any_hits(const MeshView& mesh, const Ray* rays, unsigned count)
+std::uint64_t any_hits(const MeshView& mesh, const Ray* rays, unsigned count)
 {
-    MeshHit hits[RayRun::kRays];
+    MeshHit hits[MeshKernels::kMostRays];
     return trace<true>(mesh, rays, count, hits);
 }
 

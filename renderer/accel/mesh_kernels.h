@@ -35,14 +35,14 @@ struct MeshKernels {
     bool (*closest_hit)(const MeshView& mesh, const Ray& ray, MeshHit& hit);
     bool (*any_hit)(const MeshView& mesh, const Ray& ray);
     // The same for kMostRays rays at most: bit i of the result is set where ray i hit; hits[i] says where, if so.
-    // Rays that run alike are followed together.
-    std::uint32_t (*closest_hits)(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits);
-    std::uint32_t (*any_hits)(const MeshView& mesh, const Ray* rays, unsigned count);
+    // Rays that run alike, or through one point, are followed together.
+    std::uint64_t (*closest_hits)(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits);
+    std::uint64_t (*any_hits)(const MeshView& mesh, const Ray* rays, unsigned count);
 
     // Rays of the run that are inside a box within [begin, end], and where the first of them enters.
-    std::uint32_t (*enter_box)(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest);
+    std::uint64_t (*enter_box)(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest);
 
-    static constexpr unsigned kMostRays = 16;
+    static constexpr unsigned kMostRays = 64;
 };
 
 // The best of this processor.

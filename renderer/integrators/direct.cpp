@@ -34,7 +34,7 @@ public:
     {
         if (count_ == 0) return;
         tally_.shadow_rays += count_;
-        const std::uint32_t shadowed = scene_.tree().any_hits({rays_, count_});
+        const std::uint64_t shadowed = scene_.tree().any_hits({rays_, count_});
         for (std::size_t i = 0; i < count_; ++i)
             if ((shadowed >> i & 1) == 0) radiance[sample_[i]] += light_[i];
         count_ = 0;
@@ -83,7 +83,7 @@ void direct_radiance(const Scene& scene,
     for (std::size_t i = 0; i < samples.size(); ++i)
         rays[i] = samples[i].ray;
     tally.camera_rays += samples.size();
-    const std::uint32_t seen = scene.tree().closest_hits({rays, samples.size()}, hits, RayKind::camera);
+    const std::uint64_t seen = scene.tree().closest_hits({rays, samples.size()}, hits, RayKind::camera);
 
     ShadedPoint points[kMostSamples];
     std::size_t count = 0;

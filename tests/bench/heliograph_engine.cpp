@@ -64,7 +64,7 @@ public:
                 run[i] = {to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
             }
             const std::span<const Ray> some(run, count);
-            const std::uint32_t hit =
+            const std::uint64_t hit =
                 set.occlusion ? bvh_->any_hits(some, kernels_) : bvh_->closest_hits(some, met, kernels_);
             hits += static_cast<std::uint64_t>(std::popcount(hit));
             if (found == nullptr) continue;

@@ -1,0 +1,271 @@
+// Fans of rays through a mesh: one walk for all of them. Included by mesh_kernels.cpp, once a target.
+#if defined(HELIOGRAPH_FOLLOW_FAN_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_FOLLOW_FAN_INL
+#undef HELIOGRAPH_FOLLOW_FAN_INL
+#else
+#define HELIOGRAPH_FOLLOW_FAN_INL
+#endif
+
+#include "renderer/accel/fan_block-inl.h"
+#include "renderer/accel/settle_fan-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace renderer::HWY_NAMESPACE {
+namespace {
+
+// The four planes that bound all rays, and the depths between which any of them still runs. A box is beside
+// plane `side` where its foremost corner is: rows of WideNode::planes say which corner that is.
+class FanSides {
+public:
+    HWY_INLINE explicit FanSides(const RayFan& fan)
+    {
+        const float infinity = std::numeric_limits<float>::infinity();
+        float least_x = infinity, least_y = infinity, most_x = -infinity, most_y = -infinity;
+        begin_ = infinity;
+        for (unsigned g = 0; g < fan.groups(); ++g) {
+            least_x = std::min(least_x, fan.least_x[g]);
+            least_y = std::min(least_y, fan.least_y[g]);
+            most_x = std::max(most_x, fan.most_x[g]);
+            most_y = std::max(most_y, fan.most_y[g]);
+            begin_ = std::min(begin_, fan.group_begin[g]);
+        }
+        sign_ = fan.turned ? -1.0f : 1.0f;
+        near_row_ = 2 * fan.z + (fan.turned ? 1 : 0);
+        // Roundings of slopes, planes and of this test; lines beside the apex.
+        const double size = max_abs(fan.apex) + static_cast<double>(fan.size);
+        const double slack = size * 0x1p-20 + 4.0 * static_cast<double>(fan.aside);
+        depth_shift_ = static_cast<float>(-fan.sign() * fan.apex.z - slack);
+        begin_ -= static_cast<float>(2 * slack);
+        const auto set = [&](unsigned side, std::size_t row, float slope, double at, double by) {
+            // The depth at which the box reaches farthest to this side's inner half.
+            const bool far = side % 2 == 0 ? slope > 0 : slope < 0;
+            Side& s = sides_[side];
+            s.row = row;
+            s.depth_row = far ? near_row_ ^ 1 : near_row_;
+            s.slope = slope * sign_;
+            s.at = static_cast<float>(at - static_cast<double>(s.slope) * fan.apex.z + by);
+        };
+        set(0, 2 * fan.x, most_x, fan.apex.x, slack);
+        set(1, 2 * fan.x + 1, least_x, fan.apex.x, -slack);
+        set(2, 2 * fan.y, most_y, fan.apex.y, slack);
+        set(3, 2 * fan.y + 1, least_y, fan.apex.y, -slack);
+    }
+
+    HWY_INLINE float begin() const { return begin_; }
+
+    // Children that some ray may enter before `end`, and the depths where.
+    HWY_INLINE void enter_children(const WideNode& node, float end, Entered& out) const
+    {
+        const Eight d;
+        const auto sign = hn::Set(d, sign_), shift = hn::Set(d, depth_shift_);
+        out.children = 0;
+        for (std::size_t lane = 0; lane < WideNode::kChildren; lane += hn::MaxLanes(d)) {
+            const auto entry = hn::MulAdd(hn::Load(d, node.planes[near_row_] + lane), sign, shift);
+            const auto exit = hn::MulAdd(hn::Load(d, node.planes[near_row_ ^ 1] + lane), sign, shift);
+            auto in = hn::And(hn::Le(entry, hn::Set(d, end)), hn::Le(hn::Set(d, begin_), exit));
+            for (unsigned side = 0; side < 4; ++side) {
+                const Side& s = sides_[side];
+                const auto at = hn::NegMulAdd(hn::Set(d, s.slope),
+                                              hn::Load(d, node.planes[s.depth_row] + lane),
+                                              hn::Load(d, node.planes[s.row] + lane));
+                const auto limit = hn::Set(d, s.at);
+                in = hn::And(in, side % 2 == 0 ? hn::Le(at, limit) : hn::Le(limit, at));
+            }
+            hn::Store(entry, d, out.entries + lane);
+            out.children |= bits_of(d, in) << lane;
+        }
+    }
+
+private:
+    struct Side {
+        std::size_t row, depth_row;
+        float slope, at;
+    };
+    Side sides_[4]; // even: nothing beyond it; odd: nothing before it
+    std::size_t near_row_;
+    float sign_, depth_shift_, begin_;
+};
+
+template <bool kAnyHit>
+class FanWalk {
+public:
+    FanWalk(const MeshView& mesh, RayFan& fan, const Ray* rays, MeshHit* best)
+        : mesh_(mesh), fan_(fan), found_(mesh, fan, rays, best)
+    {
+    }
+
+    // Bit i: ray i hit.
+    HWY_INLINE std::uint64_t walk()
+    {
+        struct Waiting {
+            std::uint32_t code;
+            float entry;
+        };
+        const FanSides sides(fan_);
+        Waiting stack[kMostWaiting];
+        unsigned waiting = 0;
+        Waiting next{0, sides.begin()};
+        Entered entered;
+        end_ = farthest_end();
+        for (;;) {
+            if ((next.code & ChildCode::kLeaf) != 0) {
+                visit_leaf(next.code);
+            } else {
+                const WideNode& node = mesh_.nodes[next.code];
+                sides.enter_children(node, end_, entered);
+                const unsigned base = waiting;
+                for (unsigned hits = entered.children; hits != 0; hits &= hits - 1) {
+                    const auto i = static_cast<unsigned>(__builtin_ctz(hits));
+                    const Waiting child{node.child[i], entered.entries[i]};
+                    unsigned at = waiting++;
+                    for (; at > base && stack[at - 1].entry < child.entry; --at)
+                        stack[at] = stack[at - 1];
+                    stack[at] = child;
+                }
+            }
+            do {
+                if (waiting == 0) return found_.settle();
+                next = stack[--waiting];
+            } while (next.entry > end_);
+        }
+    }
+
+private:
+    HWY_INLINE float farthest_end() const
+    {
+        const Group f;
+        auto most = hn::Load(f, fan_.group_end);
+        for (unsigned i = kGroupLanes; i < RayFan::kGroups; i += kGroupLanes)
+            most = hn::Max(most, hn::Load(f, fan_.group_end + i));
+        return hn::GetLane(hn::MaxOfLanes(f, most));
+    }
+
+    HWY_INLINE void visit_leaf(std::uint32_t code)
+    {
+        const std::uint32_t first = code & ChildCode::kNumber;
+        const std::uint32_t last = first + ((code & ChildCode::kTwoBlocks) != 0 ? 1 : 0);
+        bool drawn = false;
+        for (std::uint32_t number = first; number <= last; ++number) {
+            const TriangleBlock& block = mesh_.leaves[number];
+            FanBlock seen;
+            see_block(fan_, block, seen);
+            for (unsigned lane = 0; lane < TriangleBlock::kLanes; ++lane) {
+                if (block.primitive[lane] == TriangleBlock::kNone) break;
+                const bool certain = (seen.faces >> lane & 1) != 0;
+                for (unsigned groups = groups_meeting(seen, lane, certain); groups != 0;
+                     groups &= groups - 1) {
+                    const auto group = static_cast<unsigned>(__builtin_ctz(groups));
+                    const std::uint32_t triangle = number * TriangleBlock::kLanes + lane;
+                    drawn =
+                        (certain ? test_group(seen, lane, group, triangle) : ask_group(group, triangle)) ||
+                        drawn;
+                }
+            }
+        }
+        if (drawn) end_ = farthest_end();
+    }
+
+    // Groups of which some ray may hit the triangle.
+    HWY_INLINE unsigned groups_meeting(const FanBlock& seen, unsigned lane, bool certain) const
+    {
+        const Group f;
+        unsigned groups = 0;
+        // An edge function is largest in one corner of a group's bounds.
+        const float* corner_x[3];
+        const float* corner_y[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            corner_x[k] = seen.edge[k][0][lane] < 0 ? fan_.least_x : fan_.most_x;
+            corner_y[k] = seen.edge[k][1][lane] < 0 ? fan_.least_y : fan_.most_y;
+        }
+        const auto beyond =
+            hn::Set(f, seen.nearest[lane] - std::abs(seen.nearest[lane]) * 0x1p-21f - 4 * fan_.aside);
+        const auto behind =
+            hn::Set(f, seen.farthest[lane] + std::abs(seen.farthest[lane]) * 0x1p-21f + 4 * fan_.aside);
+        const auto error = hn::Set(f, -seen.edge_error[lane]);
+        for (unsigned i = 0; i < RayFan::kGroups; i += kGroupLanes) {
+            auto out = hn::Or(hn::Lt(hn::Load(f, fan_.group_end + i), beyond),
+                              hn::Lt(behind, hn::Load(f, fan_.group_begin + i)));
+            if (certain)
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto most = hn::MulAdd(hn::Set(f, seen.edge[k][0][lane]),
+                                                 hn::Load(f, corner_x[k] + i),
+                                                 hn::MulAdd(hn::Set(f, seen.edge[k][1][lane]),
+                                                            hn::Load(f, corner_y[k] + i),
+                                                            hn::Set(f, seen.edge[k][2][lane])));
+                    out = hn::Or(out, hn::Lt(most, error));
+                }
+            groups |= (~bits_of(f, out) & ((1u << kGroupLanes) - 1)) << i;
+        }
+        return groups;
+    }
+
+    // A triangle whose plane goes through the apex, as far as one can tell.
+    HWY_INLINE bool ask_group(unsigned group, std::uint32_t triangle)
+    {
+        const bool drawn = found_.ask(group * RayFan::kGroup, (1u << RayFan::kGroup) - 1, triangle);
+        if (drawn) found_.bound_group(group);
+        return drawn;
+    }
+
+    // The triangle against the rays of a group. True where a ray's end was drawn in.
+    HWY_INLINE bool test_group(const FanBlock& seen, unsigned lane, unsigned group, std::uint32_t triangle)
+    {
+        const Group f;
+        bool drawn = false;
+        for (unsigned i = 0; i < RayFan::kGroup; i += kGroupLanes) {
+            const unsigned ray = group * RayFan::kGroup + i;
+            const auto sx = hn::Load(f, fan_.slope_x + ray), sy = hn::Load(f, fan_.slope_y + ray);
+            const auto along = [&](const float(&n)[3][FanBlock::kLanes]) HWY_ATTR {
+                return hn::MulAdd(hn::Set(f, n[0][lane]),
+                                  sx,
+                                  hn::MulAdd(hn::Set(f, n[1][lane]), sy, hn::Set(f, n[2][lane])));
+            };
+            const auto inside =
+                hn::Min(along(seen.edge[0]), hn::Min(along(seen.edge[1]), along(seen.edge[2])));
+            const auto error = hn::Set(f, seen.edge_error[lane]);
+            const auto det = along(seen.whole), det_error = hn::Set(f, seen.whole_error[lane]);
+            const auto most_det = hn::Add(det, det_error), least_det = hn::Sub(det, det_error);
+            const auto least = hn::Set(f, seen.least_volume[lane]), most = hn::Set(f, seen.most_volume[lane]);
+            // No hit: beside the triangle, or the plane is met too late or too early.
+            const auto out = hn::Or(hn::Lt(inside, hn::Neg(error)),
+                                    hn::Or(hn::Lt(hn::Mul(hn::Load(f, fan_.end + ray), most_det), least),
+                                           hn::Lt(most, hn::Mul(hn::Load(f, fan_.begin + ray), least_det))));
+            const unsigned rays = ~bits_of(f, out) & ((1u << kGroupLanes) - 1);
+            if (rays == 0) continue;
+            // A hit for certain, and nearer than what is known: the bounds of its depth say so.
+            const auto nearest = hn::Mul(hn::Div(least, most_det), hn::Set(f, 1 - 0x1p-21f));
+            const auto farthest = hn::Mul(hn::Div(most, least_det), hn::Set(f, 1 + 0x1p-21f));
+            const auto hit = hn::And(hn::And(hn::Lt(error, inside), hn::Lt(hn::Zero(f), least_det)),
+                                     hn::And(hn::Lt(hn::Load(f, fan_.after + ray), nearest),
+                                             hn::Lt(farthest, hn::Load(f, fan_.before + ray))));
+            const unsigned hits = bits_of(f, hit) & rays;
+            if (hits != 0) {
+                if constexpr (kAnyHit) {
+                    found_.hit(ray, hits);
+                    const auto none = hn::Set(f, -std::numeric_limits<float>::infinity());
+                    hn::Store(hn::IfThenElse(hit, none, hn::Load(f, fan_.end + ray)), f, fan_.end + ray);
+                } else {
+                    found_.prefer(ray, hits, triangle);
+                    hn::Store(hn::IfThenElse(hit, farthest, hn::Load(f, fan_.end + ray)), f, fan_.end + ray);
+                    hn::Store(
+                        hn::IfThenElse(hit, nearest, hn::Load(f, fan_.before + ray)), f, fan_.before + ray);
+                }
+                drawn = true;
+            }
+            if (const unsigned unclear = rays & ~hits; unclear != 0)
+                drawn = found_.ask(ray, unclear, triangle) || drawn;
+        }
+        if (drawn) found_.bound_group(group);
+        return drawn;
+    }
+
+    const MeshView& mesh_;
+    RayFan& fan_;
+    FanFindings<kAnyHit> found_;
+    float end_ = 0;
+};
+
+} // namespace
+} // namespace renderer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif // per-target include guard

@@ -1,0 +1,243 @@
+// FanFindings: what the rays of a fan have found, and the exact tests that are left. Included by mesh_kernels.cpp,
+// once a target.
+#if defined(HELIOGRAPH_SETTLE_FAN_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_SETTLE_FAN_INL
+#undef HELIOGRAPH_SETTLE_FAN_INL
+#else
+#define HELIOGRAPH_SETTLE_FAN_INL
+#endif
+
+#include "renderer/accel/exact_ray.h"
+#include "renderer/accel/exact_test.h"
+#include "renderer/accel/prepare_fan-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace renderer::HWY_NAMESPACE {
+namespace {
+
+// Triangles are told by number: block * TriangleBlock::kLanes + lane.
+template <bool kAnyHit>
+class FanFindings {
+public:
+    HWY_INLINE FanFindings(const MeshView& mesh, RayFan& fan, const Ray* rays, MeshHit* best)
+        : mesh_(mesh), fan_(fan), rays_(rays), best_(best)
+    {
+        if (kAnyHit) return;
+        for (unsigned i = 0; i < fan.count; ++i) {
+            best[i].t = std::numeric_limits<double>::infinity();
+            best[i].primitive = TriangleBlock::kNone;
+        }
+    }
+
+    // Rays first, first + 1, ... as `lanes` says, hit for certain.
+    HWY_INLINE void hit(unsigned first, unsigned lanes) { found_ |= std::uint64_t{lanes} << first; }
+
+    // They hit this triangle, nearer than any other that is certain.
+    HWY_INLINE void prefer(unsigned first, unsigned lanes, std::uint32_t triangle)
+    {
+        preferring_ |= std::uint64_t{lanes} << first;
+        for (; lanes != 0; lanes &= lanes - 1)
+            preferred_[first + static_cast<unsigned>(__builtin_ctz(lanes))] = triangle;
+    }
+
+    // Float cannot tell whether they hit it, or whether before what they prefer. True where a ray's end was drawn
+    // in.
+    HWY_INLINE bool ask(unsigned first, unsigned lanes, std::uint32_t triangle)
+    {
+        bool drawn = false;
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const unsigned ray = first + static_cast<unsigned>(__builtin_ctz(lanes));
+            if (ray >= fan_.count) break;
+            if constexpr (kAnyHit) {
+                if ((found_ >> ray & 1) != 0) continue;
+                MeshHit hit{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
+                if (!decide(ray, triangle, hit)) continue;
+                found_ |= std::uint64_t{1} << ray;
+                fan_.end[ray] = -std::numeric_limits<float>::infinity();
+                drawn = true;
+            } else {
+                if (asked_ == kMostAsked) drawn = answer() || drawn;
+                ray_asked_[asked_] = ray;
+                triangle_asked_[asked_++] = triangle;
+            }
+        }
+        return drawn;
+    }
+
+    HWY_INLINE void bound_group(unsigned group)
+    {
+        const Group f;
+        const float* const ends = fan_.end + group * RayFan::kGroup;
+        auto most = hn::Load(f, ends);
+        for (unsigned i = kGroupLanes; i < RayFan::kGroup; i += kGroupLanes)
+            most = hn::Max(most, hn::Load(f, ends + i));
+        fan_.group_end[group] = hn::GetLane(hn::MaxOfLanes(f, most));
+    }
+
+    // The exact hits. Bit i: ray i hit.
+    HWY_INLINE std::uint64_t settle()
+    {
+        const std::uint64_t all = ~std::uint64_t{0} >> (64 - fan_.count);
+        if (kAnyHit) return found_ & all;
+        preferring_ &= all;
+        found_ |= preferring_;
+        unsigned rays[kTogether];
+        unsigned count = 0;
+        for (std::uint64_t left = preferring_; left != 0;) {
+            rays[count++] = static_cast<unsigned>(__builtin_ctzll(left));
+            left &= left - 1;
+            if (count < kTogether && left != 0) continue;
+            settle_some(rays, count);
+            count = 0;
+        }
+        answer();
+        return found_;
+    }
+
+private:
+    using D = hn::CappedTag<double, 8>;
+    using V = hn::Vec<D>;
+    using F = hn::Rebind<float, D>;
+    static constexpr unsigned kTogether = hn::MaxLanes(D());
+    static constexpr unsigned kMostAsked = 128;
+    struct Corner {
+        V x, y, z;
+    };
+
+    HWY_INLINE bool decide(unsigned ray, std::uint32_t triangle, MeshHit& best) const
+    {
+        const ExactRay exact(rays_[ray], static_cast<double>(mesh_.scale));
+        return improve_hit(exact.ray,
+                           exact.t_min,
+                           exact.t_max,
+                           mesh_.leaves[triangle / TriangleBlock::kLanes],
+                           triangle % TriangleBlock::kLanes,
+                           best);
+    }
+
+    // `best_` counts t in kernel units until then.
+    HWY_INLINE bool answer_one(unsigned ray, std::uint32_t triangle)
+    {
+        const double units =
+            power_for(max_component(abs(rays_[ray].direction))) / static_cast<double>(mesh_.scale);
+        MeshHit& best = best_[ray];
+        best.t /= units;
+        const bool better = decide(ray, triangle, best);
+        best.t *= units;
+        if (!better) return false;
+        found_ |= std::uint64_t{1} << ray;
+        const auto depth = static_cast<float>(best.t * std::abs(rays_[ray].direction[fan_.z]));
+        fan_.end[ray] = std::min(fan_.end[ray], depth + depth * 0x1p-21f + 0x1p-80f);
+        bound_group(ray / RayFan::kGroup);
+        return true;
+    }
+
+    // The exact tests that were put off. True where a ray's end was drawn in.
+    bool answer()
+    {
+        bool drawn = false;
+        for (unsigned i = 0; i < asked_; ++i)
+            drawn = answer_one(ray_asked_[i], triangle_asked_[i]) || drawn;
+        asked_ = 0;
+        return drawn;
+    }
+
+    // As intersect_watertight does, operation for operation, for rays that prefer a triangle; what is special is
+    // left to that.
+    HWY_INLINE void settle_some(const unsigned* rays, unsigned count)
+    {
+        const D d;
+        const F f;
+        std::size_t kx = fan_.x, ky = fan_.y;
+        if (rays_[rays[0]].direction[fan_.z] < 0) std::swap(kx, ky);
+        const std::size_t axes[3] = {kx, ky, fan_.z};
+        alignas(64) float corners[9][kTogether];
+        alignas(64) double origins[3][kTogether], directions[3][kTogether], from[kTogether], to[kTogether];
+        for (unsigned i = 0; i < kTogether; ++i) {
+            const unsigned ray = rays[i < count ? i : 0];
+            const TriangleBlock& block = mesh_.leaves[preferred_[ray] / TriangleBlock::kLanes];
+            const unsigned lane = preferred_[ray] % TriangleBlock::kLanes;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                for (std::size_t k = 0; k < 3; ++k)
+                    corners[3 * k + axis][i] = block.corners[k][axes[axis]][lane];
+                origins[axis][i] = rays_[ray].origin[axes[axis]];
+                directions[axis][i] = rays_[ray].direction[axes[axis]];
+            }
+            from[i] = rays_[ray].t_min;
+            to[i] = rays_[ray].t_max;
+        }
+        const hn::RebindToUnsigned<D> du;
+        const V size = hn::Abs(hn::Load(d, directions[2]));
+        const auto exponent = hn::And(hn::BitCast(du, size), hn::Set(du, std::uint64_t{0x7ff} << 52));
+        // mesh.scale is 1, and powers of two have exact inverses.
+        const V power = hn::BitCast(d, hn::Sub(hn::Set(du, std::uint64_t{0x7fe} << 52), exponent));
+        const V inverse = hn::BitCast(d, exponent);
+        const V main = hn::Mul(hn::Load(d, directions[2]), power);
+        const V sx = hn::Div(hn::Mul(hn::Load(d, directions[0]), power), main);
+        const V sy = hn::Div(hn::Mul(hn::Load(d, directions[1]), power), main);
+        const V sz = hn::Div(hn::Set(d, 1.0), main);
+        Corner p[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto at = [&](std::size_t axis) HWY_ATTR {
+                return hn::Sub(hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis])),
+                               hn::Load(d, origins[axis]));
+            };
+            const V depth = at(2);
+            p[k] = {
+                hn::Sub(at(0), hn::Mul(sx, depth)), hn::Sub(at(1), hn::Mul(sy, depth)), hn::Mul(sz, depth)};
+        }
+        const auto edge = [](const Corner& a, const Corner& b)
+                              HWY_ATTR { return hn::Sub(hn::Mul(b.x, a.y), hn::Mul(b.y, a.x)); };
+        const V e[3] = {edge(p[1], p[2]), edge(p[2], p[0]), edge(p[0], p[1])};
+        const V det = hn::Add(hn::Add(e[0], e[1]), e[2]);
+        const V inverse_det = hn::Div(hn::Set(d, 1.0), det);
+        const V w[3] = {hn::Mul(e[0], inverse_det), hn::Mul(e[1], inverse_det), hn::Mul(e[2], inverse_det)};
+        const auto mean = [&](V a, V b, V c) HWY_ATTR {
+            return hn::Add(hn::Add(hn::Mul(w[0], a), hn::Mul(w[1], b)), hn::Mul(w[2], c));
+        };
+        const V t = mean(p[0].z, p[1].z, p[2].z);
+        const V off = hn::Max(hn::Abs(mean(p[0].x, p[1].x, p[2].x)), hn::Abs(mean(p[0].y, p[1].y, p[2].y)));
+        const auto max3 = [](V a, V b, V c)
+                              HWY_ATTR { return hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c)); };
+        const V widest = hn::Max(max3(p[0].x, p[1].x, p[2].x), max3(p[0].y, p[1].y, p[2].y));
+        // Where the weights need not be drawn onto the ray, the axes are the fan's, and the rest is as float said.
+        auto plain = hn::Le(off, hn::Mul(hn::Set(d, gamma<double>(16)), widest));
+        plain = hn::And(plain,
+                        hn::And(hn::Le(hn::Abs(sx), hn::Set(d, 1.0)), hn::Le(hn::Abs(sy), hn::Set(d, 1.0))));
+        plain = hn::And(plain, hn::Ge(hn::Min(w[0], hn::Min(w[1], w[2])), hn::Zero(d)));
+        plain = hn::And(plain,
+                        hn::And(hn::Lt(hn::Mul(hn::Load(d, from), inverse), t),
+                                hn::Lt(t, hn::Mul(hn::Load(d, to), inverse))));
+        alignas(64) double out[4][kTogether];
+        hn::Store(hn::Mul(t, power), d, out[0]);
+        for (std::size_t k = 0; k < 3; ++k)
+            hn::Store(w[k], d, out[1 + k]);
+        const unsigned as_said = bits_of(d, plain);
+        for (unsigned i = 0; i < count; ++i) {
+            const unsigned ray = rays[i];
+            if ((as_said >> i & 1) == 0) {
+                answer_one(ray, preferred_[ray]);
+                continue;
+            }
+            const std::uint32_t primitive = mesh_.leaves[preferred_[ray] / TriangleBlock::kLanes]
+                                                .primitive[preferred_[ray] % TriangleBlock::kLanes];
+            MeshHit& best = best_[ray];
+            if (out[0][i] < best.t || (out[0][i] == best.t && primitive < best.primitive))
+                best = {out[0][i], primitive, {out[1][i], out[2][i], out[3][i]}};
+        }
+    }
+
+    const MeshView& mesh_;
+    RayFan& fan_;
+    const Ray* rays_;
+    MeshHit* best_;
+    std::uint64_t found_ = 0, preferring_ = 0;
+    unsigned asked_ = 0;
+    std::uint32_t preferred_[RayFan::kRays];
+    std::uint32_t ray_asked_[kMostAsked], triangle_asked_[kMostAsked];
+};
+
+} // namespace
+} // namespace renderer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif // per-target include guard
