@@ -36,7 +36,7 @@ public:
     {
         const Ray& first = rays_[0];
         const bool outward = first.origin == rays_[1].origin;
-        if (mesh_.scale != 1 || (!outward && !any_hit)) return false;
+        if (mesh_.scale != 1 || mesh_.residuals != nullptr || (!outward && !any_hit)) return false;
         apex_ = outward ? first.origin : first.origin + first.direction * first.t_max;
         if (!apex_is_near() || (!outward && !ends_near_apex(rays_[1]))) return false;
         name_axes(outward);

@@ -110,6 +110,7 @@ private:
         return improve_hit(exact.ray,
                            exact.t_min,
                            exact.t_max,
+                           mesh_,
                            mesh_.leaves[triangle / TriangleBlock::kLanes],
                            triangle % TriangleBlock::kLanes,
                            best);
