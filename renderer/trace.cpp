@@ -20,7 +20,8 @@ constexpr std::uint32_t kBlock = 4;
 // Collects samples into runs, and what they find into the sums of their pixels, in the order of arrival.
 class SampleRuns {
 public:
-    SampleRuns(const Scene& scene, const Plan& plan, TracedUnit& out) : scene_(scene), plan_(plan), out_(out)
+    SampleRuns(const Scene& scene, const Plan& plan, const std::stop_token& stop, TracedUnit& out)
+        : scene_(scene), plan_(plan), stop_(stop), out_(out)
     {
     }
 
@@ -42,12 +43,9 @@ public:
     void flush()
     {
         Rgb found[kMostSamples];
-        switch (plan_.transport) {
-        case TransportType::automatic: // make_plan has chosen: direct is what there is
-        case TransportType::direct:
-            direct_radiance(scene_, {samples_, count_}, found, out_.tally);
-        }
-        for (std::size_t i = 0; i < count_; ++i) {
+        if (!stop_.stop_requested()) radiance_of(found);
+        stopped_ = stop_.stop_requested(); // for every run: without trees one may take long
+        for (std::size_t i = 0; i < count_ && !stopped_; ++i) {
             if (is_finite(found[i]))
                 out_.sums.sums[pixels_[i]] += found[i];
             else
@@ -56,10 +54,23 @@ public:
         count_ = 0;
     }
 
+    bool stopped() const { return stopped_; } // what there is may be incomplete
+
 private:
+    void radiance_of(std::span<Rgb> found)
+    {
+        switch (plan_.transport) {
+        case TransportType::automatic: // make_plan has chosen: direct is what there is
+        case TransportType::direct:
+            direct_radiance(scene_, {samples_, count_}, found, out_.tally, stop_);
+        }
+    }
+
     const Scene& scene_;
     const Plan& plan_;
+    const std::stop_token& stop_;
     TracedUnit& out_;
+    bool stopped_ = false;
     std::size_t count_ = 0;
     CameraSample samples_[kMostSamples];
     std::size_t pixels_[kMostSamples]; // of the tile
@@ -93,13 +104,13 @@ std::optional<TracedUnit> trace(const Scene& scene,
 {
     const PixelRect& tile = unit.tile;
     TracedUnit out{{tile, std::vector<RgbSum>(std::size_t{tile.width} * tile.height)}, {}};
-    SampleRuns runs(scene, plan, out);
+    SampleRuns runs(scene, plan, stop, out);
     for (std::uint32_t y = 0; y < tile.height; y += kBlock) {
-        if (stop.stop_requested()) return std::nullopt;
         for (std::uint32_t x = 0; x < tile.width; x += kBlock) {
             const PixelRect block{
                 tile.x + x, tile.y + y, std::min(kBlock, tile.width - x), std::min(kBlock, tile.height - y)};
             trace_block(runs, seed, tile, block, unit.slice);
+            if (runs.stopped()) return std::nullopt;
         }
     }
     return out;

@@ -1,7 +1,7 @@
 // trace: one work unit of a render: a slice of samples of a tile, as sums. A pure function.
 //
 // Threads  any number at once; units of one tile may be traced in any order and merged in theirs.
-// Cost     proportional to pixels times samples; stops within four rows of the tile when asked to.
+// Cost     proportional to pixels times samples; stops within 16 samples and one light when asked to.
 #pragma once
 
 #include "renderer/film/film.h"

@@ -189,11 +189,12 @@ void fields(V& v, X& acceleration)
 {
     v.group("bvh", "bounding volume hierarchies", [&](auto& bvh) {
         bvh.word("split", acceleration.split, "how nodes are divided");
-        bvh.only("levels", bvh_level_words(), "trees over objects and within each mesh");
+        bvh.word("width", acceleration.width, "children of a node within a mesh: eight, or two");
+        bvh.word("levels", acceleration.levels, "trees over the objects and within each mesh, or fewer");
     });
     v.integer("threads", acceleration.threads, kThreads, "0: every core");
     v.integer("tile", acceleration.tile_px, kTile, "side of a tile in pixels");
-    v.unbuilt({"bounds"}, "leave it out");
+    v.boolean("bounds", acceleration.bounds, "where no tree is over the objects: each one's box first");
 }
 
 template <typename V, Sees<JobRequest> X>

@@ -4,7 +4,9 @@
 
 namespace api {
 
+using renderer::BvhLevels;
 using renderer::BvhSplit;
+using renderer::BvhWidth;
 using renderer::Environment;
 using renderer::Light;
 using renderer::Material;
@@ -105,16 +107,27 @@ WordTable words_for<BvhSplit>()
     return words;
 }
 
+template <>
+WordTable words_for<BvhWidth>()
+{
+    static constexpr std::array words{enumerator("wide", BvhWidth::wide),
+                                      enumerator("binary", BvhWidth::binary)};
+    return words;
+}
+
+template <>
+WordTable words_for<BvhLevels>()
+{
+    static constexpr std::array words{enumerator("two", BvhLevels::two),
+                                      enumerator("mesh", BvhLevels::mesh),
+                                      enumerator("none", BvhLevels::none)};
+    return words;
+}
+
 WordTable camera_words()
 {
     static constexpr std::array words{
         Word{"perspective", 0}, Word{"orthographic"}, Word{"panorama"}, Word{"meter"}};
-    return words;
-}
-
-WordTable bvh_level_words()
-{
-    static constexpr std::array words{Word{"two", 0}, Word{"mesh"}, Word{"none"}};
     return words;
 }
 

@@ -70,10 +70,13 @@ template <>
 WordTable words_for<renderer::Tone>();
 template <>
 WordTable words_for<renderer::BvhSplit>();
+template <>
+WordTable words_for<renderer::BvhWidth>();
+template <>
+WordTable words_for<renderer::BvhLevels>();
 
 // Words without a value of their own: the one that is built is what happens.
 WordTable camera_words();
-WordTable bvh_level_words();
 WordTable fail_on_words();
 
 // What importer and encoder speak; held against them by tests.

@@ -23,6 +23,7 @@ inline double power_for(double largest)
 
 struct ExactRay {
     WatertightRay<double> ray;
+    Vec3d direction; // near 1 in length, as `ray` was made of
     double t_min, t_max;
     double ray_units; // t of the ray = t of the kernel * ray_units
 
@@ -30,7 +31,8 @@ struct ExactRay {
     ExactRay(const Ray& given, double scale)
     {
         const double power = power_for(max_component(abs(given.direction)));
-        ray = WatertightRay<double>(given.origin * scale, given.direction * power);
+        direction = given.direction * power;
+        ray = WatertightRay<double>(given.origin * scale, direction);
         t_min = given.t_min * (scale / power);
         t_max = given.t_max * (scale / power);
         ray_units = power / scale;

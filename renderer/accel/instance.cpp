@@ -28,10 +28,11 @@ Vec3d reach_of_point(const Affine3& m, Vec3d v)
 // Centre and half extent of the shape in its own frame.
 Bounds3d object_bounds(const InstanceGeometry& geometry)
 {
-    return std::visit(Overloaded{[](const MeshGeometry& m) {
-                                     const Bounds3f& box = m.bvh->bounds();
-                                     return Bounds3d{to_double(box.lower), to_double(box.upper)};
-                                 },
+    const auto in_double = [](const Bounds3f& box) {
+        return Bounds3d{to_double(box.lower), to_double(box.upper)};
+    };
+    return std::visit(Overloaded{[&](const MeshGeometry& m) { return in_double(m.bvh->bounds()); },
+                                 [&](const BaselineGeometry& m) { return in_double(m.search->bounds()); },
                                  [](const Sphere& s) {
                                      const Vec3d r = Vec3d{1, 1, 1} * s.radius;
                                      return Bounds3d{-r, r};
@@ -102,20 +103,23 @@ std::optional<Instance::Candidate> Instance::closest_hit(const Ray& world_ray) c
         if (const std::optional<double> t = intersect(shape, ray)) return Candidate{*t, 0, {}};
         return std::nullopt;
     };
-    return std::visit(Overloaded{[&](const MeshGeometry& m) -> std::optional<Candidate> {
-                                     const std::optional<MeshHit> hit = m.bvh->closest_hit(ray);
-                                     if (!hit) return std::nullopt;
-                                     return Candidate{hit->t, hit->primitive, hit->barycentrics};
-                                 },
-                                 [&](const Sphere& s) { return exact(s); },
-                                 [&](const Disk& d) { return exact(d); }},
-                      geometry_);
+    const auto candidate = [](const std::optional<MeshHit>& hit) -> std::optional<Candidate> {
+        if (!hit) return std::nullopt;
+        return Candidate{hit->t, hit->primitive, hit->barycentrics};
+    };
+    return std::visit(
+        Overloaded{[&](const MeshGeometry& m) { return candidate(m.bvh->closest_hit(ray)); },
+                   [&](const BaselineGeometry& m) { return candidate(m.search->closest_hit(ray)); },
+                   [&](const Sphere& s) { return exact(s); },
+                   [&](const Disk& d) { return exact(d); }},
+        geometry_);
 }
 
 bool Instance::any_hit(const Ray& world_ray) const
 {
     const Ray ray = to_object(world_ray);
     return std::visit(Overloaded{[&](const MeshGeometry& m) { return m.bvh->any_hit(ray); },
+                                 [&](const BaselineGeometry& m) { return m.search->any_hit(ray); },
                                  [&](const Sphere& s) { return intersect(s, ray).has_value(); },
                                  [&](const Disk& d) { return intersect(d, ray).has_value(); }},
                       geometry_);
@@ -173,14 +177,15 @@ SurfacePoint Instance::to_world(const SurfacePoint& object_point) const
 SceneHit Instance::resolve(const Ray& world_ray, const Candidate& candidate) const
 {
     const auto exact = [&](const auto& shape) { return point_at(shape, to_object(world_ray), candidate.t); };
-    const SurfacePoint object = std::visit(
-        Overloaded{
-            [&](const MeshGeometry& m) {
-                return surface_point(*m.mesh, {candidate.t, candidate.primitive, candidate.barycentrics});
-            },
-            [&](const Sphere& s) { return exact(s); },
-            [&](const Disk& d) { return exact(d); }},
-        geometry_);
+    const auto on_mesh = [&](const Mesh& mesh) {
+        return surface_point(mesh, {candidate.t, candidate.primitive, candidate.barycentrics});
+    };
+    const SurfacePoint object =
+        std::visit(Overloaded{[&](const MeshGeometry& m) { return on_mesh(*m.mesh); },
+                              [&](const BaselineGeometry& m) { return on_mesh(*m.mesh); },
+                              [&](const Sphere& s) { return exact(s); },
+                              [&](const Disk& d) { return exact(d); }},
+                   geometry_);
     SceneHit hit;
     hit.t = candidate.t;
     hit.primitive = candidate.primitive;

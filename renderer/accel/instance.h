@@ -1,6 +1,7 @@
 // Instance: one object of a scene as rays see it: a shape and where it stands.
 #pragma once
 
+#include "renderer/accel/baseline_mesh.h"
 #include "renderer/accel/mesh_bvh.h"
 #include "renderer/geometry/disk.h"
 #include "renderer/geometry/sphere.h"
@@ -20,7 +21,11 @@ struct MeshGeometry {
     const Mesh* mesh;
     const MeshBvh* bvh;
 };
-using InstanceGeometry = std::variant<MeshGeometry, Sphere, Disk>;
+struct BaselineGeometry {
+    const Mesh* mesh;
+    const BaselineMesh* search;
+};
+using InstanceGeometry = std::variant<MeshGeometry, Sphere, Disk, BaselineGeometry>;
 
 // What a ray is for: an object may be hidden from the camera and still cast shadows and be reflected.
 enum class RayKind : std::uint8_t { camera, other };

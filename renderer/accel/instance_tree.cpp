@@ -20,19 +20,34 @@ struct InstanceTree::Best {
     }
 };
 
-InstanceTree::InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool)
-    : instances_(std::move(instances))
+std::vector<InstanceTree::Listed> InstanceTree::with_something_to_hit()
 {
-    PlainArray<BuildItem<double>> items(instances_.size());
-    std::size_t count = 0;
+    std::vector<Listed> found;
     for (std::uint32_t i = 0; i < instances_.size(); ++i) {
         const Bounds3d box = instances_[i].world_bounds();
         if (box.empty()) continue;
         bounds_.extend(box);
-        items[count++] = {box.lower, i, box.upper};
+        found.push_back({i, box});
     }
-    items.shorten(count);
+    return found;
+}
+
+InstanceTree::InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool)
+    : InstanceTree(std::move(instances))
+{
+    const std::vector<Listed> there = with_something_to_hit();
+    PlainArray<BuildItem<double>> items(there.size());
+    for (std::size_t i = 0; i < there.size(); ++i)
+        items[i] = {there[i].box.lower, there[i].number, there[i].box.upper};
     bvh_ = *build_bvh<double>(std::move(items), {.split = split, .leaf_size = 1}, pool);
+}
+
+InstanceTree InstanceTree::list(std::vector<Instance> instances, bool boxes_first)
+{
+    InstanceTree tree(std::move(instances));
+    tree.listed_ = tree.with_something_to_hit();
+    tree.boxes_first_ = boxes_first;
+    return tree;
 }
 
 void InstanceTree::consider(const Ray& ray, RayKind kind, std::uint32_t number, Best& best) const
@@ -58,7 +73,25 @@ SlabRay<double> slabs_of(const Ray& ray, const Bounds3d& bounds)
     return {ray.origin, reciprocal(ray.direction), 0x1p-49 * (max_abs(ray.origin) + size)};
 }
 
+// Where a ray may end whose best hit so far is at t: past it, so that ties are still seen.
+double just_past(double t, double t_max)
+{
+    return std::min(t_max, std::nextafter(t, std::numeric_limits<double>::infinity()));
+}
+
 } // namespace
+
+template <typename Ask>
+void InstanceTree::ask_listed(const Ray& ray, const double& end, Ask&& ask) const
+{
+    if (!is_traceable(ray)) return;
+    const SlabRay<double> slabs = slabs_of(ray, bounds_);
+    double entry = 0, exit = 0;
+    for (const Listed& one : listed_) {
+        if (boxes_first_ && !slabs.meets(one.box.lower, one.box.upper, ray.t_min, end, entry, exit)) continue;
+        if (ask(one.number)) return;
+    }
+}
 
 std::optional<SceneHit> InstanceTree::closest_hit(const Ray& ray, RayKind kind) const
 {
@@ -75,13 +108,21 @@ std::optional<SceneHit> InstanceTree::closest_hit(const Ray& ray, RayKind kind) 
                      for (std::uint32_t i = first; i < first + count; ++i) {
                          consider(shortened, kind, bvh_.order[i], best);
                          if (!best.found) continue;
-                         // Past the best hit, ties still seen.
                          end = best.candidate.t;
-                         shortened.t_max = std::min(
-                             ray.t_max, std::nextafter(end, std::numeric_limits<double>::infinity()));
+                         shortened.t_max = just_past(end, ray.t_max);
                      }
                      return false;
                  });
+    } else {
+        Ray shortened = ray;
+        double end = ray.t_max;
+        ask_listed(ray, end, [&](std::uint32_t number) {
+            consider(shortened, kind, number, best);
+            if (!best.found) return false;
+            end = best.candidate.t;
+            shortened.t_max = just_past(end, ray.t_max);
+            return false;
+        });
     }
     if (!best.found) return std::nullopt;
     return resolve(ray, best);
@@ -93,8 +134,12 @@ bool InstanceTree::any_hit(const Ray& ray, RayKind kind) const
         const Instance& only = instances_[bvh_.order[0]];
         return only.visible_to(kind) && only.any_hit(ray);
     }
-    if (bvh_.empty() || !is_traceable(ray)) return false;
     bool found = false;
+    if (!listed_.empty())
+        ask_listed(ray, ray.t_max, [&](std::uint32_t number) {
+            return found = instances_[number].visible_to(kind) && instances_[number].any_hit(ray);
+        });
+    if (bvh_.empty() || !is_traceable(ray)) return found;
     traverse(bvh_,
              slabs_of(ray, bounds_),
              ray.t_min,
@@ -125,7 +170,7 @@ public:
             std::uint64_t rays;
             double entry;
         };
-        if (tree_.bvh_.empty()) return;
+        if (tree_.bvh_.empty()) return walk_list();
         Waiting stack[2 * kMaxBvhDepth];
         unsigned waiting = 0;
         const auto enter = [&](const BvhNode<double>& node) {
@@ -154,6 +199,16 @@ public:
     const Best& best(std::size_t ray) const { return best_[ray]; }
 
 private:
+    void walk_list()
+    {
+        for (const Listed& one : tree_.listed_) {
+            double entry = 0;
+            ask(one.number,
+                tree_.boxes_first_ ? kernels_.enter_box(boxes_, one.box.lower, one.box.upper, entry)
+                                   : boxes_.rays);
+            if (kAnyHit && found_ == boxes_.rays) return;
+        }
+    }
     // `rays` may be done by now, all the same: what they find is no better.
     void ask(std::uint32_t number, std::uint64_t rays)
     {
@@ -166,11 +221,7 @@ private:
         for (; rays != 0; rays &= rays - 1) {
             const auto ray = static_cast<unsigned>(__builtin_ctzll(rays));
             asking[count] = rays_[ray];
-            // Past the best hit, ties still seen.
-            if ((found_ >> ray & 1) != 0)
-                asking[count].t_max =
-                    std::min(rays_[ray].t_max,
-                             std::nextafter(boxes_.end[ray], std::numeric_limits<double>::infinity()));
+            if ((found_ >> ray & 1) != 0) asking[count].t_max = just_past(boxes_.end[ray], rays_[ray].t_max);
             from[count++] = ray;
         }
         if (kAnyHit) {

@@ -1,5 +1,6 @@
 #include "renderer/accel/mesh_bvh.h"
 
+#include "renderer/accel/exact_ray.h"
 #include "renderer/accel/exact_test.h"
 #include "renderer/accel/ray_run.h"
 #include "renderer/math/floating_point_mode.h"
@@ -81,17 +82,14 @@ bool MeshBvh::any_hit(const Ray& ray, const MeshKernels& kernels) const
 std::optional<MeshHit> MeshBvh::closest_hit_brute_force(const Ray& ray) const
 {
     if (!is_traceable(ray)) return std::nullopt;
-    const double size = max_component(abs(ray.direction)), scale = static_cast<double>(scale_);
-    const double direction_scale = std::exp2(-std::floor(std::log2(size)));
-    const WatertightRay<double> exact(ray.origin * scale, ray.direction * direction_scale);
-    const double units = scale / direction_scale;
+    const ExactRay exact(ray, static_cast<double>(scale_));
     MeshHit best{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
     const MeshView mesh = view();
     for (const TriangleBlock& block : leaves_)
         for (unsigned lane = 0; lane < TriangleBlock::kLanes; ++lane)
-            improve_hit(exact, ray.t_min * units, ray.t_max * units, mesh, block, lane, best);
+            improve_hit(exact.ray, exact.t_min, exact.t_max, mesh, block, lane, best);
     if (best.primitive == TriangleBlock::kNone) return std::nullopt;
-    best.t *= direction_scale / scale;
+    best.t *= exact.ray_units;
     return best;
 }
 

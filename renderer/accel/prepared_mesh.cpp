@@ -1,29 +1,33 @@
 #include "renderer/accel/prepared_mesh.h"
 
+#include "renderer/accel/baseline_mesh.h"
 #include "renderer/accel/mesh_bvh.h"
 
 #include <optional>
 #include <utility>
+#include <variant>
 
 namespace renderer {
 
 class PreparedMesh {
 public:
-    PreparedMesh(std::shared_ptr<const Mesh> mesh, MeshBvh bvh, bool owns_mesh)
-        : mesh_(std::move(mesh)), bvh_(std::move(bvh)), owns_mesh_(owns_mesh)
+    using Search = std::variant<MeshBvh, BaselineMesh>;
+
+    PreparedMesh(std::shared_ptr<const Mesh> mesh, Search search, bool owns_mesh)
+        : mesh_(std::move(mesh)), search_(std::move(search)), owns_mesh_(owns_mesh)
     {
     }
 
     const std::shared_ptr<const Mesh>& mesh() const { return mesh_; }
-    const MeshBvh& bvh() const { return bvh_; }
+    const Search& search() const { return search_; }
     std::uint64_t size_bytes() const
     {
-        return sizeof *this + bvh_.size_bytes() + (owns_mesh_ ? sizeof(Mesh) + mesh_->size_bytes() : 0);
+        return sizeof *this + bvh_bytes(*this) + (owns_mesh_ ? sizeof(Mesh) + mesh_->size_bytes() : 0);
     }
 
 private:
     std::shared_ptr<const Mesh> mesh_;
-    MeshBvh bvh_;
+    Search search_;
     bool owns_mesh_; // a part shares the arrays of the whole, which counts them
 };
 
@@ -32,42 +36,58 @@ namespace {
 std::shared_ptr<const PreparedMesh> prepare_run(std::shared_ptr<const Mesh> mesh,
                                                 TriangleRun run,
                                                 bool owns_mesh,
-                                                BvhSplit split,
+                                                MeshTree tree,
                                                 ThreadPool& pool,
-                                                std::stop_token stop)
+                                                const std::stop_token& stop)
 {
-    std::optional<MeshBvh> bvh = MeshBvh::build(*mesh, run, split, pool, std::move(stop));
-    if (!bvh) return nullptr;
-    return std::make_shared<const PreparedMesh>(std::move(mesh), std::move(*bvh), owns_mesh);
+    const auto prepared = [&](auto search) -> std::shared_ptr<const PreparedMesh> {
+        if (!search) return nullptr;
+        return std::make_shared<const PreparedMesh>(std::move(mesh), std::move(*search), owns_mesh);
+    };
+    switch (tree) {
+    case MeshTree::wide_sah:
+        return prepared(MeshBvh::build(*mesh, run, BvhSplit::sah, pool, stop));
+    case MeshTree::wide_midpoint:
+        return prepared(MeshBvh::build(*mesh, run, BvhSplit::midpoint, pool, stop));
+    case MeshTree::binary_sah:
+        return prepared(BaselineMesh::build(*mesh, run, BvhSplit::sah, pool, stop));
+    case MeshTree::binary_midpoint:
+        return prepared(BaselineMesh::build(*mesh, run, BvhSplit::midpoint, pool, stop));
+    case MeshTree::none:
+        return prepared(BaselineMesh::build(*mesh, run, std::nullopt, pool, stop));
+    }
+    return nullptr;
 }
 
 } // namespace
 
 std::shared_ptr<const PreparedMesh>
-prepare_mesh(Mesh mesh, BvhSplit split, ThreadPool& pool, std::stop_token stop)
+prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, std::stop_token stop)
 {
     const TriangleRun all{0, static_cast<std::uint32_t>(mesh.triangles.size())};
-    return prepare_run(
-        std::make_shared<const Mesh>(std::move(mesh)), all, true, split, pool, std::move(stop));
+    return prepare_run(std::make_shared<const Mesh>(std::move(mesh)), all, true, tree, pool, stop);
 }
 
 std::shared_ptr<const PreparedMesh> prepare_part(const std::shared_ptr<const PreparedMesh>& whole,
                                                  const MeshPart& part,
-                                                 BvhSplit split,
+                                                 MeshTree tree,
                                                  ThreadPool& pool,
                                                  std::stop_token stop)
 {
-    return prepare_run(
-        whole->mesh(), {part.first_triangle, part.triangle_count}, false, split, pool, std::move(stop));
+    return prepare_run(whole->mesh(), {part.first_triangle, part.triangle_count}, false, tree, pool, stop);
 }
 
 const Mesh& mesh_of(const PreparedMesh& prepared)
 {
     return *prepared.mesh();
 }
-const MeshBvh& bvh_of(const PreparedMesh& prepared)
+const MeshBvh* bvh_of(const PreparedMesh& prepared)
 {
-    return prepared.bvh();
+    return std::get_if<MeshBvh>(&prepared.search());
+}
+const BaselineMesh* baseline_of(const PreparedMesh& prepared)
+{
+    return std::get_if<BaselineMesh>(&prepared.search());
 }
 std::uint64_t size_bytes(const PreparedMesh& prepared)
 {
@@ -75,11 +95,11 @@ std::uint64_t size_bytes(const PreparedMesh& prepared)
 }
 std::uint64_t bvh_bytes(const PreparedMesh& prepared)
 {
-    return prepared.bvh().size_bytes();
+    return std::visit([](const auto& search) { return search.size_bytes(); }, prepared.search());
 }
 std::uint64_t degenerate_triangles(const PreparedMesh& prepared)
 {
-    return prepared.bvh().degenerate_triangles();
+    return std::visit([](const auto& search) { return search.degenerate_triangles(); }, prepared.search());
 }
 
 } // namespace renderer

@@ -16,23 +16,26 @@
 
 namespace renderer {
 
+class BaselineMesh;
 class MeshBvh;
 class PreparedMesh;
 
-// Builds the BVH; deterministic: the same mesh and split give the same tree on any number of threads.
+// Builds the BVH; deterministic: the same mesh gives the same tree on any number of threads.
 std::shared_ptr<const PreparedMesh>
-prepare_mesh(Mesh mesh, BvhSplit split, ThreadPool& pool, std::stop_token stop = {});
+prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, std::stop_token stop = {});
 
 // Only the triangles of `part`, a run of the whole mesh's; the arrays stay shared with `whole`, and
 // primitives keep the numbers that they have there.
 std::shared_ptr<const PreparedMesh> prepare_part(const std::shared_ptr<const PreparedMesh>& whole,
                                                  const MeshPart& part,
-                                                 BvhSplit split,
+                                                 MeshTree tree,
                                                  ThreadPool& pool,
                                                  std::stop_token stop = {});
 
-const Mesh& mesh_of(const PreparedMesh& prepared);   // of a part: the whole mesh
-const MeshBvh& bvh_of(const PreparedMesh& prepared); // see mesh_bvh.h
+const Mesh& mesh_of(const PreparedMesh& prepared); // of a part: the whole mesh
+// One of the two, by the tree that was asked for; the other is nullptr.
+const MeshBvh* bvh_of(const PreparedMesh& prepared);           // wide: see mesh_bvh.h
+const BaselineMesh* baseline_of(const PreparedMesh& prepared); // binary, or none: see baseline_mesh.h
 std::uint64_t size_bytes(
     const PreparedMesh& prepared); // all memory it holds: what a cache counts; a part: without the arrays
 std::uint64_t bvh_bytes(const PreparedMesh& prepared);            // nodes + leaves, without the vertices

@@ -1,6 +1,6 @@
 // traverse: walks a Bvh along a ray, nearest boxes first, and hands over the leaves that the ray may touch.
 //
-// Cost  iterative, a fixed stack, no allocation.
+// Cost  iterative, a fixed stack, no allocation. Boxes may be stored narrower than the ray counts.
 #pragma once
 
 #include "renderer/accel/bvh.h"
@@ -14,25 +14,30 @@ namespace renderer {
 // true to end the walk. A box that the ray enters after `end` is passed over; one entered exactly there is
 // not, so that ties are seen. Children are visited in order of entry; the set of leaves that can hold a hit
 // does not depend on it.
-template <typename T, typename Leaf>
-void traverse(const Bvh<T>& bvh, const SlabRay<T>& ray, T begin, T end, Leaf&& leaf)
+template <typename Stored, typename T, typename Leaf>
+void traverse(const Bvh<Stored>& bvh, const SlabRay<T>& ray, T begin, T end, Leaf&& leaf)
 {
     struct Waiting {
-        const BvhNode<T>* node;
+        const BvhNode<Stored>* node;
         T entry;
     };
     if (bvh.empty()) return;
     Waiting stack[kMaxBvhDepth];
     unsigned waiting = 0;
-    T entry{}, exit{};
-    if (!ray.meets(bvh.root.lower, bvh.root.upper, begin, end, entry, exit)) return;
-    const BvhNode<T>* node = &bvh.root;
+    const auto meets = [&](const BvhNode<Stored>& box, T& entry) {
+        const Vec3<T> lower{box.lower.x, box.lower.y, box.lower.z},
+            upper{box.upper.x, box.upper.y, box.upper.z};
+        T exit{};
+        return ray.meets(lower, upper, begin, end, entry, exit);
+    };
+    T root_entry{};
+    if (!meets(bvh.root, root_entry)) return;
+    const BvhNode<Stored>* node = &bvh.root;
     for (;;) {
         if (node->count == 0) {
-            const BvhPair<T>& pair = bvh.pairs[node->first];
+            const BvhPair<Stored>& pair = bvh.pairs[node->first];
             T entry_0{}, entry_1{};
-            const bool hit_0 = ray.meets(pair.child[0].lower, pair.child[0].upper, begin, end, entry_0, exit);
-            const bool hit_1 = ray.meets(pair.child[1].lower, pair.child[1].upper, begin, end, entry_1, exit);
+            const bool hit_0 = meets(pair.child[0], entry_0), hit_1 = meets(pair.child[1], entry_1);
             if (hit_0 && hit_1) {
                 const unsigned nearer = entry_1 < entry_0 ? 1 : 0;
                 stack[waiting++] = {&pair.child[1 - nearer], nearer == 1 ? entry_0 : entry_1};

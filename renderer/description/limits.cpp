@@ -45,6 +45,11 @@ std::span<const LimitEntry> limit_table()
                    "",
                    "triangles in a scene, each mesh counted once",
                    (1ull << 32) - 2},
+        LimitEntry{"listed_triangles",
+                   &Limits::listed_triangles,
+                   "",
+                   "triangles of all objects where `acceleration` asks for no trees",
+                   1ull << 40},
         LimitEntry{"objects", &Limits::objects, "", "objects in a scene", 1ull << 31},
         LimitEntry{"render_memory_bytes",
                    &Limits::render_memory_bytes,
@@ -87,6 +92,7 @@ Limits Limits::none()
     limits.image_pixels = 1ull << 32;
     limits.samples = 1ull << 31;
     limits.triangles = (1ull << 32) - 2; // indices are 32-bit
+    limits.listed_triangles = 1ull << 40;
     limits.render_memory_bytes = physical_memory_bytes();
     return limits;
 }

@@ -1,6 +1,7 @@
 // How to render a scene: picture, quality, seed and measuring switches. Input, like SceneDescription.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -31,14 +32,31 @@ struct QualitySettings {
 inline constexpr std::uint32_t kDefaultSamples = 64; // where quality names neither samples nor time
 
 enum class BvhSplit : std::uint8_t { sah, midpoint };
+enum class BvhWidth : std::uint8_t { wide, binary };     // children of a node within a mesh: eight, or two
+enum class BvhLevels : std::uint8_t { two, mesh, none }; // trees over objects and within meshes, or fewer
 
 // For measuring only; no member changes the picture.
 struct AccelerationSettings {
     BvhSplit split = BvhSplit::sah;
+    BvhWidth width = BvhWidth::wide;
+    BvhLevels levels = BvhLevels::two;
+    bool bounds = false;       // where no tree is over the objects: ask each one's box first
     std::uint32_t threads = 0; // 0: every core
     std::uint32_t tile_px = 16;
     friend bool operator==(const AccelerationSettings&, const AccelerationSettings&) = default;
 };
+
+// What is built over the triangles of a mesh.
+enum class MeshTree : std::uint8_t { wide_sah, wide_midpoint, binary_sah, binary_midpoint, none };
+inline constexpr std::size_t kMeshTrees = 5;
+
+constexpr MeshTree mesh_tree(const AccelerationSettings& acceleration)
+{
+    if (acceleration.levels == BvhLevels::none) return MeshTree::none;
+    const bool sah = acceleration.split == BvhSplit::sah;
+    if (acceleration.width == BvhWidth::binary) return sah ? MeshTree::binary_sah : MeshTree::binary_midpoint;
+    return sah ? MeshTree::wide_sah : MeshTree::wide_midpoint;
+}
 
 struct RenderSettings {
     ImageSettings image;

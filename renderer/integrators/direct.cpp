@@ -76,7 +76,8 @@ void add_environment(const ShadedPoint& point, const CameraSample& of, Rgb envir
 void direct_radiance(const Scene& scene,
                      std::span<const CameraSample> samples,
                      std::span<Rgb> radiance,
-                     RayTally& tally)
+                     RayTally& tally,
+                     const std::stop_token& stop)
 {
     Ray rays[kMostSamples];
     SceneHit hits[kMostSamples];
@@ -100,6 +101,7 @@ void direct_radiance(const Scene& scene,
     const std::span<const ShadedPoint> shaded(points, count);
     PendingLight pending(scene, tally);
     for (const PreparedLight& light : scene.lights()) {
+        if (stop.stop_requested()) return;
         for (const ShadedPoint& point : shaded)
             add_light(point, light, pending);
         pending.arrive(radiance);

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 
 namespace renderer {
 
@@ -42,11 +43,13 @@ struct CameraSample {
 };
 
 // Radiance of each of at most kMostSamples samples; each is a function of that sample alone. Fastest where their
-// rays run alike: they, and their shadow rays, are followed together.
+// rays run alike: they, and their shadow rays, are followed together. Once `stop` is requested nothing of the
+// result is to be used.
 void direct_radiance(const Scene& scene,
                      std::span<const CameraSample> samples,
                      std::span<Rgb> radiance,
-                     RayTally& tally);
+                     RayTally& tally,
+                     const std::stop_token& stop);
 inline constexpr std::size_t kMostSamples = InstanceTree::kMostRays;
 
 } // namespace renderer

@@ -1,5 +1,7 @@
 #include "renderer/plan/budget.h"
 
+#include "renderer/geometry/shapes.h"
+
 #include <set>
 #include <string>
 #include <tuple>
@@ -36,6 +38,19 @@ std::uint64_t triangles_of_parts(const SceneDescription& scene, std::span<const 
     return triangles;
 }
 
+// Of an object; those of a mesh that is not known yet are not counted.
+std::uint64_t triangles_of(const Shape& shape, std::span<const MeshFacts> meshes)
+{
+    if (std::holds_alternative<BoxShape>(shape)) return unit_box().triangles.size();
+    if (std::holds_alternative<RectangleShape>(shape)) return unit_rectangle().triangles.size();
+    const auto* const mesh = std::get_if<MeshShape>(&shape);
+    if (mesh == nullptr || mesh->mesh >= meshes.size()) return 0;
+    const MeshFacts& facts = meshes[mesh->mesh];
+    if (mesh->part.empty()) return facts.triangles;
+    const auto part = facts.parts.find(mesh->part);
+    return part == facts.parts.end() ? 0 : part->second.triangle_count;
+}
+
 std::string refused(std::uint64_t value, const std::string& what, const char* limit_name, std::uint64_t limit)
 {
     return std::to_string(value) + " " + what + ", the limit `" + limit_name + "` is " +
@@ -66,6 +81,9 @@ predict(const SceneDescription& scene, std::span<const MeshFacts> meshes, const 
         scene.objects.size() * kBytesPerObject + triangles_of_parts(scene, meshes) * kTreeBytesPerTriangle;
     for (const MeshFacts& facts : meshes)
         add_mesh(b, facts);
+    if (settings.acceleration.levels == BvhLevels::none)
+        for (const ObjectDescription& object : scene.objects)
+            b.listed_triangles += triangles_of(object.shape, meshes);
     return b;
 }
 
@@ -78,6 +96,13 @@ void check_budget(const Budget& budget, const Limits& limits, FaultList& faults)
         faults.add({"/scene/objects",
                     "over_limit",
                     refused(budget.triangles, "triangles", "triangles", limits.triangles)});
+    if (budget.listed_triangles > limits.listed_triangles)
+        faults.add({"/acceleration/bvh/levels",
+                    "over_limit",
+                    refused(budget.listed_triangles,
+                            "triangles to test every ray against without a tree",
+                            "listed_triangles",
+                            limits.listed_triangles)});
     const std::uint64_t memory = budget.film_bytes + budget.mesh_bytes;
     if (memory > limits.render_memory_bytes)
         faults.add({budget.film_bytes > budget.mesh_bytes ? "/image" : "/scene/objects",

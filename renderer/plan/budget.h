@@ -21,10 +21,11 @@ namespace renderer {
 inline constexpr std::uint64_t kMergeBytes = 32u << 20;
 
 struct Budget {
-    std::uint64_t pixels = 0;     // of the region that is rendered
-    std::uint64_t triangles = 0;  // each mesh counted once
-    std::uint64_t film_bytes = 0; // sums, results on their way to them, the finished picture, its PNG
-    std::uint64_t mesh_bytes = 0; // vertices, indices, a BVH for each mesh and each different part
+    std::uint64_t pixels = 0;           // of the region that is rendered
+    std::uint64_t triangles = 0;        // each mesh counted once
+    std::uint64_t listed_triangles = 0; // that every ray is tested against, where no tree is asked for
+    std::uint64_t film_bytes = 0;       // sums, results on their way to them, the finished picture, its PNG
+    std::uint64_t mesh_bytes = 0;       // vertices, indices, a BVH for each mesh and each different part
 };
 
 Budget

@@ -1,5 +1,6 @@
 #include "renderer/plan/choices.h"
 
+#include <cstdio>
 #include <set>
 #include <string>
 #include <variant>
@@ -86,7 +87,10 @@ std::string of(std::size_t count, const char* what)
 
 class Explainer {
 public:
-    explicit Explainer(const Census& census) : c_(census) {}
+    Explainer(const Census& census, const RenderSettings& settings, const Budget& budget)
+        : c_(census), settings_(settings), budget_(budget)
+    {
+    }
 
     ModelReport run(const std::vector<ModelChoice>& assumed)
     {
@@ -96,6 +100,7 @@ public:
             "light reaches a surface from lights and environment and is scattered once towards the camera");
         skip("indirect_light", "transport is direct: light that scatters more than once is left out");
         geometry();
+        trees();
         shading();
         lights();
         return std::move(out_);
@@ -126,11 +131,46 @@ private:
                "flat_shapes",
                of(c_.rectangles + c_.disks, "rectangle or disk object"));
         use_if(c_.spheres, "exact_spheres", of(c_.spheres, "sphere") + ", intersected as spheres");
-        if (c_.objects > 1)
+    }
+
+    void trees()
+    {
+        const AccelerationSettings& asked = settings_.acceleration;
+        if (asked.levels != BvhLevels::two)
+            skip("two_level_bvh", "`acceleration` asks for no tree over the objects");
+        else if (c_.objects > 1)
             use("two_level_bvh", "objects are placed over their meshes' own trees, so instances share one");
         else
             skip("two_level_bvh",
                  c_.objects == 1 ? "a single object is asked directly" : "there is no object to be found");
+        if (asked.levels != BvhLevels::two)
+            use("object_list",
+                std::string("`acceleration` asks for it: a ray asks every object") +
+                    (asked.bounds ? " whose box it meets" : ""));
+        if (asked.levels == BvhLevels::none)
+            use("triangle_list", "`acceleration` asks for it: " + tests_predicted());
+        else if (asked.width == BvhWidth::binary)
+            use("binary_bvh", "`acceleration` asks for it: two children a node, one ray at a time");
+        if (asked.levels != BvhLevels::none && asked.split == BvhSplit::midpoint)
+            use("midpoint_split", "`acceleration` asks for it: nodes are cut in the middle");
+    }
+
+    // Shadow rays come on top: how many is not known before.
+    std::string tests_predicted() const
+    {
+        std::string text =
+            std::string(settings_.acceleration.bounds ? "a ray in an object's box" : "every ray") +
+            " is tested against each of its triangles, " + std::to_string(budget_.listed_triangles) +
+            " in all";
+        const QualitySettings& quality = settings_.quality;
+        if (settings_.acceleration.bounds || (quality.time_s && !quality.samples)) return text;
+        char tests[32];
+        std::snprintf(tests,
+                      sizeof tests,
+                      "%.2g",
+                      static_cast<double>(budget_.pixels) * quality.samples.value_or(kDefaultSamples) *
+                          static_cast<double>(budget_.listed_triangles));
+        return text + ": " + tests + " tests for camera rays alone";
     }
 
     void shading()
@@ -196,15 +236,20 @@ private:
     }
 
     const Census& c_;
+    const RenderSettings& settings_;
+    const Budget& budget_;
     ModelReport out_;
 };
 
 } // namespace
 
-ModelReport explain(const AssumedScene& scene, std::span<const MeshFacts> meshes)
+ModelReport explain(const AssumedScene& scene,
+                    std::span<const MeshFacts> meshes,
+                    const RenderSettings& settings,
+                    const Budget& budget)
 {
     const Census census = census_of(scene.description, meshes);
-    return Explainer(census).run(scene.assumed);
+    return Explainer(census, settings, budget).run(scene.assumed);
 }
 
 } // namespace renderer

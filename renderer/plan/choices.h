@@ -2,12 +2,16 @@
 #pragma once
 
 #include "renderer/description/report.h"
+#include "renderer/plan/budget.h"
 #include "renderer/plan/plan.h"
 
 #include <span>
 
 namespace renderer {
 
-ModelReport explain(const AssumedScene& scene, std::span<const MeshFacts> meshes);
+ModelReport explain(const AssumedScene& scene,
+                    std::span<const MeshFacts> meshes,
+                    const RenderSettings& settings,
+                    const Budget& budget);
 
 } // namespace renderer

@@ -18,14 +18,15 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     FaultList faults;
     check_description(description, meshes, faults);
     check_settings(settings, faults);
-    check_budget(predict(description, meshes, settings), limits, faults);
+    const Budget budget = predict(description, meshes, settings);
+    check_budget(budget, limits, faults);
     if (!faults.empty()) return faults.take();
 
     Plan plan;
     plan.transport = TransportType::direct;
     plan.world_origin = choose_world_origin(description, meshes);
     plan.precision = corner_precision(description, meshes);
-    plan.models = explain(scene, meshes);
+    plan.models = explain(scene, meshes, settings, budget);
     explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);
     return plan;
 }

@@ -38,10 +38,10 @@ public:
     Preparation(const SceneDescription& scene,
                 Vec3d world_origin,
                 std::span<const SharedMesh> meshes,
-                BvhSplit split,
+                MeshTree tree,
                 ThreadPool& pool,
                 const std::stop_token& stop)
-        : scene_(scene), world_origin_(world_origin), meshes_(meshes), split_(split), pool_(pool), stop_(stop)
+        : scene_(scene), world_origin_(world_origin), meshes_(meshes), tree_(tree), pool_(pool), stop_(stop)
     {
         for (const NamedMaterial& material : scene.materials)
             bsdfs.push_back(make_bsdf(material.material));
@@ -124,11 +124,15 @@ private:
         return Found{rays_of(*prepared), &mesh_of(*prepared)};
     }
 
-    static MeshGeometry rays_of(const PreparedMesh& mesh) { return {&mesh_of(mesh), &bvh_of(mesh)}; }
-
-    MeshGeometry unit_shape(SharedMesh& shared, Mesh (*make)())
+    static InstanceGeometry rays_of(const PreparedMesh& mesh)
     {
-        if (!shared) shared = prepare_mesh(make(), split_, pool_);
+        if (const MeshBvh* const bvh = bvh_of(mesh)) return MeshGeometry{&mesh_of(mesh), bvh};
+        return BaselineGeometry{&mesh_of(mesh), baseline_of(mesh)};
+    }
+
+    InstanceGeometry unit_shape(SharedMesh& shared, Mesh (*make)())
+    {
+        if (!shared) shared = prepare_mesh(make(), tree_, pool_);
         hold(shared);
         return rays_of(*shared);
     }
@@ -145,7 +149,7 @@ private:
         const MeshPart& run = *found->second;
         if (run.triangle_count == whole.triangles.size()) return meshes_[shape.mesh];
         SharedMesh& shared = parts_[{shape.mesh, run.first_triangle, run.triangle_count}];
-        if (!shared) shared = prepare_part(meshes_[shape.mesh], run, split_, pool_, stop_);
+        if (!shared) shared = prepare_part(meshes_[shape.mesh], run, tree_, pool_, stop_);
         return shared;
     }
 
@@ -161,7 +165,7 @@ private:
     const SceneDescription& scene_;
     Vec3d world_origin_;
     std::span<const SharedMesh> meshes_;
-    BvhSplit split_;
+    MeshTree tree_; // as all of `meshes` were prepared
     ThreadPool& pool_;
     const std::stop_token& stop_;
     SharedMesh box_, rectangle_;
@@ -220,14 +224,16 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
 {
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
-    const BvhSplit split = settings.acceleration.split;
-    Preparation made(description, plan.world_origin, meshes, split, pool, stop);
+    const AccelerationSettings& acceleration = settings.acceleration;
+    Preparation made(description, plan.world_origin, meshes, mesh_tree(acceleration), pool, stop);
     if (!made.run()) return nullptr;
     std::vector<PreparedLight> lights;
     for (const Light& light : description.lights)
         lights.push_back(prepare_light(moved(light, plan.world_origin)));
 
-    InstanceTree tree(std::move(made.instances), split, pool);
+    InstanceTree tree = acceleration.levels == BvhLevels::two
+                            ? InstanceTree(std::move(made.instances), acceleration.split, pool)
+                            : InstanceTree::list(std::move(made.instances), acceleration.bounds);
     made.geometry.bvh_bytes += tree.size_bytes();
     made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds(), plan.world_origin);
     made.numerics.precision = plan.precision;

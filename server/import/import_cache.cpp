@@ -61,8 +61,8 @@ void ImportCache::store(KnownImport known)
     if (same != same_main.end()) {
         const Entries::iterator entry = *same;
         bytes_ -= bytes_of(*entry);
-        for (std::size_t split = 0; split < known.prepared.size(); ++split)
-            if (!known.prepared[split]) known.prepared[split] = std::move(entry->prepared[split]);
+        for (std::size_t tree = 0; tree < known.prepared.size(); ++tree)
+            if (!known.prepared[tree]) known.prepared[tree] = std::move(entry->prepared[tree]);
         *entry = std::move(known);
         entries_.splice(entries_.begin(), entries_, entry);
     } else {

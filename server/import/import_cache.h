@@ -31,8 +31,8 @@ struct KnownImport {
     NamedDigests answers; // to what the importer asked
     std::optional<ImportFailure> failure;
     std::optional<api::AssetInfo::MeshInfo> figures; // engaged unless it failed
-    std::array<std::shared_ptr<const renderer::PreparedMesh>, 2>
-        prepared; // by split; null where not (any more) in memory
+    std::array<std::shared_ptr<const renderer::PreparedMesh>, renderer::kMeshTrees>
+        prepared; // by tree; null where not (any more) in memory
 };
 
 class ImportCache {

@@ -42,7 +42,7 @@ std::string main_key(const ImportRequest& request)
 // An asset by itself, as /info looks at it.
 ImportRequest bare_request(const std::string& digest)
 {
-    return {"", digest, {}, renderer::BvhSplit::sah};
+    return {"", digest, {}, renderer::MeshTree::wide_sah};
 }
 
 api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const KnownImport& known)
@@ -204,10 +204,10 @@ std::variant<PreparedAsset, ImportFailure>
 ImportService::import(const ImportRequest& request, renderer::ThreadPool& pool, const std::stop_token& stop)
 try {
     using Answer = std::variant<PreparedAsset, ImportFailure>;
-    const auto split = static_cast<std::size_t>(request.split);
+    const auto tree = static_cast<std::size_t>(request.tree);
     const auto answer = [&](const KnownImport& known) -> std::optional<Answer> {
         if (known.failure) return *known.failure;
-        if (known.prepared[split]) return PreparedAsset{known.prepared[split], known.figures->notes};
+        if (known.prepared[tree]) return PreparedAsset{known.prepared[tree], known.figures->notes};
         return std::nullopt;
     };
     bool stopped = false;
@@ -226,9 +226,9 @@ try {
     auto* asset = std::get_if<ImportedAsset>(&imported);
     if (!asset) return PreparedAsset{};
     known.figures = mesh_figures(*asset);
-    PreparedAsset prepared{prepare_mesh(std::move(asset->mesh), request.split, pool, stop),
+    PreparedAsset prepared{prepare_mesh(std::move(asset->mesh), request.tree, pool, stop),
                            known.figures->notes};
-    known.prepared[split] = prepared.mesh;
+    known.prepared[tree] = prepared.mesh;
     state_->remember(std::move(known));
     return prepared;
 } catch (const std::bad_alloc&) {

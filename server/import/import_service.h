@@ -3,7 +3,7 @@
 // hostile. Prepared meshes are kept in memory, least recently used first out, by bytes.
 //
 // Key      digest and extension of the main file, digests of every file that it asked for (or that there was
-//          none), split. Failures that would come again are remembered too; time and memory
+//          none), tree. Failures that would come again are remembered too; time and memory
 //          are not such.
 // Bytes    every blob is verified against its digest before what came of it is told or kept: the importer
 //          reads the file itself while this process verifies it.
@@ -40,7 +40,7 @@ struct ImportRequest {
     std::string name;                         // as the scene calls it: its extension may tell the format
     std::string digest;                       // of the main file
     std::map<std::string, std::string> files; // the job's files, name -> digest: the only names that resolve
-    renderer::BvhSplit split = renderer::BvhSplit::sah;
+    renderer::MeshTree tree = renderer::MeshTree::wide_sah;
 };
 
 class ImportService {

@@ -53,7 +53,7 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
         auto answer = tools.imports.import({.name = scene.meshes[i].name,
                                             .digest = scene.meshes[i].digest,
                                             .files = run.request.files,
-                                            .split = run.request.settings.acceleration.split},
+                                            .tree = renderer::mesh_tree(run.request.settings.acceleration)},
                                            tools.pool,
                                            run.stop);
         if (auto* failure = std::get_if<ImportFailure>(&answer)) {

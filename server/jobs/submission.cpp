@@ -20,7 +20,7 @@ std::vector<renderer::Fault> known_faults(const api::JobRequest& request, const 
         auto known = imports.known_failure({.name = request.scene.meshes[i].name,
                                             .digest = request.scene.meshes[i].digest,
                                             .files = request.files,
-                                            .split = request.settings.acceleration.split});
+                                            .tree = renderer::mesh_tree(request.settings.acceleration)});
         if (auto* failure = std::get_if<ImportFailure>(&known)) failed.emplace(i, std::move(*failure));
     }
     renderer::FaultList faults;

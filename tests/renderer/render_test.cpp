@@ -44,12 +44,57 @@ TEST(Render, GivesTheSameBitsForEveryTileSize)
     }
 }
 
-TEST(Render, GivesTheSameBitsForEverySplitOfTheTree)
+TEST(Render, GivesTheSameBitsWhateverTheAcceleration)
+{
+    const std::uint64_t want = digest(render_description(kitchen_sink()).film);
+    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint})
+        for (const BvhWidth width : {BvhWidth::wide, BvhWidth::binary})
+            for (const BvhLevels levels : {BvhLevels::two, BvhLevels::mesh, BvhLevels::none})
+                for (const bool bounds : {false, true}) {
+                    TestScene test = kitchen_sink();
+                    test.settings.acceleration.split = split;
+                    test.settings.acceleration.width = width;
+                    test.settings.acceleration.levels = levels;
+                    test.settings.acceleration.bounds = bounds;
+                    EXPECT_EQ(digest(render_description(test).film), want)
+                        << static_cast<int>(split) << static_cast<int>(width) << static_cast<int>(levels)
+                        << bounds;
+                }
+}
+
+TEST(Render, GivesTheSameBitsOfASingleObjectWithoutTrees)
 {
     TestScene test = kitchen_sink();
+    test.description.objects.resize(1);
     const std::uint64_t want = digest(render_description(test).film);
-    test.settings.acceleration.split = BvhSplit::midpoint;
-    EXPECT_EQ(digest(render_description(test).film), want);
+    for (const BvhLevels levels : {BvhLevels::mesh, BvhLevels::none})
+        for (const bool bounds : {false, true}) {
+            test.settings.acceleration.levels = levels;
+            test.settings.acceleration.bounds = bounds;
+            EXPECT_EQ(digest(render_description(test).film), want) << static_cast<int>(levels) << bounds;
+        }
+}
+
+TEST(Render, StopsWithinABlockOfPixels)
+{
+    // Two thousand million samples of one pixel: weeks, if stop were only looked at between pixels.
+    TestScene test = kitchen_sink();
+    test.settings.acceleration.levels = BvhLevels::none;
+    ThreadPool pool(1);
+    const tests::ReadyScene ready = make_ready(test, pool);
+    std::stop_source source;
+    std::optional<TracedUnit> traced;
+    std::atomic<bool> begun = false;
+    {
+        const std::jthread tracer([&] {
+            begun = true;
+            traced = trace(*ready.scene, ready.plan, 1, {{30, 20, 1, 1}, {0, 1u << 31}}, source.get_token());
+        });
+        while (!begun)
+            std::this_thread::yield();
+        source.request_stop();
+    }
+    EXPECT_FALSE(traced);
 }
 
 TEST(Render, GivesACropThePixelsOfTheFullPicture)

@@ -37,7 +37,7 @@ ReadyScene make_ready(const TestScene& test, ThreadPool& pool)
     for (const Mesh& mesh : test.meshes) {
         description.meshes.push_back({"mesh" + std::to_string(facts.size()), ""});
         facts.push_back(facts_of(mesh));
-        prepared.push_back(prepare_mesh(mesh, test.settings.acceleration.split, pool));
+        prepared.push_back(prepare_mesh(mesh, mesh_tree(test.settings.acceleration), pool));
     }
     const double aspect = static_cast<double>(test.settings.image.width_px) / test.settings.image.height_px;
     const AssumedScene assumed = assume_defaults(std::move(description), facts, aspect);

@@ -71,6 +71,8 @@ TEST(WordTables, HaveAWordForEachAlternative)
     expect_a_word_for_each<renderer::TransportType>(2, 0);
     expect_a_word_for_each<renderer::Tone>(2, 0);
     expect_a_word_for_each<renderer::BvhSplit>(2, 0);
+    expect_a_word_for_each<renderer::BvhWidth>(2, 0);
+    expect_a_word_for_each<renderer::BvhLevels>(3, 0);
 }
 
 TEST(WordTables, TellBuiltFromKnown)

@@ -70,9 +70,12 @@ private:
             s.quality.time_s = positive();
         s.quality.max_samples = static_cast<std::uint32_t>(whole(1, 65536));
         s.seed = random_() % (std::uint64_t(1) << 53);
-        s.acceleration = {coin() ? renderer::BvhSplit::sah : renderer::BvhSplit::midpoint,
-                          static_cast<std::uint32_t>(whole(0, 64)),
-                          static_cast<std::uint32_t>(whole(1, 64))};
+        s.acceleration = {.split = coin() ? renderer::BvhSplit::sah : renderer::BvhSplit::midpoint,
+                          .width = coin() ? renderer::BvhWidth::wide : renderer::BvhWidth::binary,
+                          .levels = static_cast<renderer::BvhLevels>(whole(0, 2)),
+                          .bounds = coin(),
+                          .threads = static_cast<std::uint32_t>(whole(0, 64)),
+                          .tile_px = static_cast<std::uint32_t>(whole(1, 64))};
     }
 
     renderer::Material material()

@@ -25,8 +25,8 @@ class Objects {
 public:
     void add(Mesh mesh, const Affine3& placed, bool visible_to_camera = true)
     {
-        meshes_.push_back(prepare_mesh(std::move(mesh), BvhSplit::sah, pool_));
-        add(MeshGeometry{&mesh_of(*meshes_.back()), &bvh_of(*meshes_.back())}, placed, visible_to_camera);
+        meshes_.push_back(prepare_mesh(std::move(mesh), MeshTree::wide_sah, pool_));
+        add(MeshGeometry{&mesh_of(*meshes_.back()), bvh_of(*meshes_.back())}, placed, visible_to_camera);
     }
     void add(InstanceGeometry geometry, const Affine3& placed, bool visible_to_camera = true)
     {
@@ -35,6 +35,7 @@ public:
         instances_.push_back(*instance);
     }
     InstanceTree tree(BvhSplit split = BvhSplit::sah) { return {instances_, split, pool_}; }
+    InstanceTree list(bool boxes_first) { return InstanceTree::list(instances_, boxes_first); }
 
 private:
     ThreadPool pool_{1};
@@ -79,13 +80,14 @@ TEST(InstanceTree, FindsTheSameHitAsBruteForce)
         Objects objects;
         for (int i = 0; i < count; ++i)
             add_random(objects, random, 3);
-        const InstanceTree sah = objects.tree(), midpoint = objects.tree(BvhSplit::midpoint);
+        const InstanceTree sah = objects.tree(), midpoint = objects.tree(BvhSplit::midpoint),
+                           list = objects.list(false), boxes = objects.list(true);
         for (int i = 0; i < 5000 / kThinning; ++i) {
             const Vec3d origin = random.direction() * random.uniform(0, 20);
             Ray ray{origin, random.in_box({-3, -3, -3}, {3, 3, 3}) - origin};
             if (random.below(4) == 0) ray.t_max = random.uniform(0, 1);
             const auto expected = sah.closest_hit_brute_force(ray);
-            for (const InstanceTree* tree : {&sah, &midpoint}) {
+            for (const InstanceTree* tree : {&sah, &midpoint, &list, &boxes}) {
                 const auto hit = tree->closest_hit(ray);
                 ASSERT_EQ(hit.has_value(), expected.has_value());
                 ASSERT_EQ(tree->any_hit(ray), expected.has_value());
@@ -101,6 +103,45 @@ TEST(InstanceTree, FindsTheSameHitAsBruteForce)
     EXPECT_GT(hits, 5000 / kThinning);
 }
 
+TEST(InstanceTree, AnswersARunAsItsRaysOneByOne)
+{
+    Random random(3);
+    int hits = 0;
+    for (const int count : {1, 2, 30}) {
+        Objects objects;
+        for (int i = 0; i < count; ++i)
+            add_random(objects, random, 3);
+        const InstanceTree tree = objects.tree(), list = objects.list(false), boxes = objects.list(true);
+        for (int i = 0; i < 300 / kThinning; ++i) {
+            Ray rays[InstanceTree::kMostRays];
+            for (Ray& ray : rays) {
+                ray.origin = random.direction() * random.uniform(0, 20);
+                ray.direction = random.in_box({-3, -3, -3}, {3, 3, 3}) - ray.origin;
+                if (random.below(4) == 0) ray.t_max = random.uniform(0, 1);
+                if (random.below(9) == 0) ray.direction = {};
+            }
+            const std::size_t size = 1 + random.below(InstanceTree::kMostRays);
+            for (const InstanceTree* asked : {&tree, &list, &boxes}) {
+                SceneHit found[InstanceTree::kMostRays];
+                const std::uint32_t hit = asked->closest_hits({rays, size}, found),
+                                    met = asked->any_hits({rays, size});
+                for (std::size_t r = 0; r < size; ++r) {
+                    const auto expected = tree.closest_hit_brute_force(rays[r]);
+                    ASSERT_EQ((hit >> r & 1) != 0, expected.has_value());
+                    ASSERT_EQ((met >> r & 1) != 0, expected.has_value());
+                    if (!expected) continue;
+                    ASSERT_EQ(found[r].t, expected->t);
+                    ASSERT_EQ(found[r].instance, expected->instance);
+                    ASSERT_EQ(found[r].primitive, expected->primitive);
+                    ++hits;
+                }
+                ASSERT_EQ((hit | met) >> (size - 1) >> 1, 0u);
+            }
+        }
+    }
+    EXPECT_GT(hits, 300 / kThinning);
+}
+
 TEST(InstanceTree, PrefersTheLowestInstanceAmongEquals)
 {
     Objects objects;
@@ -108,13 +149,16 @@ TEST(InstanceTree, PrefersTheLowestInstanceAmongEquals)
     objects.add(Sphere{0.1}, Affine3::translate({9, 9, 9}));
     for (int i = 0; i < 7; ++i)
         objects.add(unit_box(), placed);
-    const InstanceTree tree = objects.tree();
+    const InstanceTree tree = objects.tree(), list = objects.list(true);
     Random random(2);
     for (int i = 0; i < 1000; ++i) {
         const Vec3d origin = random.direction() * 3.0;
-        const auto hit = tree.closest_hit(Ray{origin, random.direction() * 0.3 - origin});
-        ASSERT_TRUE(hit);
-        ASSERT_EQ(hit->instance, 1u);
+        const Ray ray{origin, random.direction() * 0.3 - origin};
+        for (const InstanceTree* asked : {&tree, &list}) {
+            const auto hit = asked->closest_hit(ray);
+            ASSERT_TRUE(hit);
+            ASSERT_EQ(hit->instance, 1u);
+        }
     }
 }
 
@@ -124,16 +168,17 @@ TEST(InstanceTree, HidesObjectsFromTheCameraAlone)
         Objects objects;
         objects.add(unit_rectangle(), {}, false);
         if (count == 2) objects.add(unit_rectangle(), Affine3::translate({0, 0, -1}));
-        const InstanceTree tree = objects.tree();
         const Ray ray{{0.1, 0.1, 1}, {0, 0, -1}};
-        EXPECT_EQ(tree.closest_hit(ray, RayKind::other)->instance, 0u);
-        const auto seen = tree.closest_hit(ray, RayKind::camera);
-        EXPECT_EQ(seen.has_value(), count == 2);
-        EXPECT_EQ(tree.any_hit(ray, RayKind::camera), count == 2);
-        if (seen) {
-            EXPECT_EQ(seen->instance, 1u);
+        for (const InstanceTree& tree : {objects.tree(), objects.list(false), objects.list(true)}) {
+            EXPECT_EQ(tree.closest_hit(ray, RayKind::other)->instance, 0u);
+            const auto seen = tree.closest_hit(ray, RayKind::camera);
+            EXPECT_EQ(seen.has_value(), count == 2);
+            EXPECT_EQ(tree.any_hit(ray, RayKind::camera), count == 2);
+            if (seen) {
+                EXPECT_EQ(seen->instance, 1u);
+            }
+            EXPECT_TRUE(tree.any_hit(ray));
         }
-        EXPECT_TRUE(tree.any_hit(ray));
     }
 }
 

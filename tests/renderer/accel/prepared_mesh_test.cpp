@@ -15,14 +15,14 @@ TEST(PreparedMesh, KnowsItsMeshAndWhatItHolds)
     Mesh mesh = random_scenes::grid(50, 10);
     mesh.triangles.push_back({0, 0, 1});
     const std::uint64_t mesh_bytes = mesh.size_bytes();
-    const auto prepared = prepare_mesh(mesh, BvhSplit::sah, pool);
+    const auto prepared = prepare_mesh(mesh, MeshTree::wide_sah, pool);
     ASSERT_TRUE(prepared);
     EXPECT_EQ(mesh_of(*prepared).triangles, mesh.triangles);
     EXPECT_EQ(degenerate_triangles(*prepared), 1u);
     EXPECT_GT(bvh_bytes(*prepared), 5000u * 40);
     EXPECT_LT(bvh_bytes(*prepared), 5000u * 100);
     EXPECT_GE(size_bytes(*prepared), bvh_bytes(*prepared) + mesh_bytes / 2);
-    EXPECT_TRUE(bvh_of(*prepared).any_hit(Ray{{1, 1, 1}, {0, -1, 0}}));
+    EXPECT_TRUE(bvh_of(*prepared)->any_hit(Ray{{1, 1, 1}, {0, -1, 0}}));
 }
 
 TEST(PreparedMesh, OfAPartHitsThatPartAlone)
@@ -31,21 +31,21 @@ TEST(PreparedMesh, OfAPartHitsThatPartAlone)
     Random random(3);
     Mesh mesh = random_scenes::soup(random, 600, 1, 0.4);
     mesh.parts = {{"first", 0, 200}, {"middle", 200, 150}, {"last", 350, 250}};
-    const auto whole = prepare_mesh(mesh, BvhSplit::sah, pool);
+    const auto whole = prepare_mesh(mesh, MeshTree::wide_sah, pool);
     for (const MeshPart& part : mesh.parts) {
-        const auto prepared = prepare_part(whole, part, BvhSplit::sah, pool);
+        const auto prepared = prepare_part(whole, part, MeshTree::wide_sah, pool);
         ASSERT_TRUE(prepared);
         EXPECT_EQ(&mesh_of(*prepared), &mesh_of(*whole)) << "arrays are shared";
         EXPECT_LT(size_bytes(*prepared), size_bytes(*whole));
         Mesh alone = mesh; // the same triangles, the others taken out
         alone.triangles.assign(mesh.triangles.begin() + part.first_triangle,
                                mesh.triangles.begin() + part.first_triangle + part.triangle_count);
-        const auto expected = prepare_mesh(alone, BvhSplit::sah, pool);
+        const auto expected = prepare_mesh(alone, MeshTree::wide_sah, pool);
         int hits = 0;
         for (int i = 0; i < 2000; ++i) {
             const Vec3d origin = random.direction() * 4.0;
             const Ray ray{origin, random.in_box({-1, -1, -1}, {1, 1, 1}) - origin};
-            const auto hit = bvh_of(*prepared).closest_hit(ray), other = bvh_of(*expected).closest_hit(ray);
+            const auto hit = bvh_of(*prepared)->closest_hit(ray), other = bvh_of(*expected)->closest_hit(ray);
             ASSERT_EQ(hit.has_value(), other.has_value());
             if (!hit) continue;
             ++hits;
@@ -61,9 +61,9 @@ TEST(PreparedMesh, IsNotMadeOnceStopIsRequested)
     ThreadPool pool(1);
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_FALSE(prepare_mesh(random_scenes::grid(50, 1), BvhSplit::sah, pool, stop.get_token()));
-    const auto whole = prepare_mesh(random_scenes::grid(50, 1), BvhSplit::midpoint, pool);
-    EXPECT_FALSE(prepare_part(whole, {"", 0, 100}, BvhSplit::sah, pool, stop.get_token()));
+    EXPECT_FALSE(prepare_mesh(random_scenes::grid(50, 1), MeshTree::wide_sah, pool, stop.get_token()));
+    const auto whole = prepare_mesh(random_scenes::grid(50, 1), MeshTree::wide_midpoint, pool);
+    EXPECT_FALSE(prepare_part(whole, {"", 0, 100}, MeshTree::wide_sah, pool, stop.get_token()));
 }
 
 } // namespace

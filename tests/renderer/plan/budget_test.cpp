@@ -8,6 +8,7 @@ using renderer::Budget;
 using renderer::FaultList;
 using renderer::Limits;
 using renderer::MeshFacts;
+using renderer::RenderSettings;
 using renderer::SceneDescription;
 
 namespace {
@@ -70,6 +71,31 @@ TEST(Budget, RefusesMorePartsThanMemoryHolds)
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].pointer, "/scene/objects");
     EXPECT_THAT(found[0].detail, HasSubstr("render_memory_bytes"));
+}
+
+TEST(Budget, RefusesMoreTrianglesWithoutATreeThanStopsInTime)
+{
+    MeshFacts large = nested();
+    large.triangles = Limits{}.listed_triangles / 2 + 1;
+    const std::vector<MeshFacts> meshes{large};
+    RenderSettings settings;
+    const auto faults = [&](const SceneDescription& scene, Limits limits = {}) {
+        FaultList found;
+        limits.render_memory_bytes = Limits::none().render_memory_bytes;
+        check_budget(predict(scene, meshes, settings), limits, found);
+        return found.take();
+    };
+    EXPECT_TRUE(faults(scene_of({"", ""})).empty()) << "with trees";
+    settings.acceleration.levels = renderer::BvhLevels::none;
+    EXPECT_TRUE(faults(scene_of({""})).empty());
+    EXPECT_TRUE(faults(scene_of({"", "part1"})).empty());
+    const auto found = faults(scene_of({"", ""})); // instances count
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].pointer, "/acceleration/bvh/levels");
+    EXPECT_EQ(found[0].code, "over_limit");
+    EXPECT_THAT(found[0].detail, HasSubstr("16000002"));
+    EXPECT_THAT(found[0].detail, HasSubstr("listed_triangles"));
+    EXPECT_TRUE(faults(scene_of({"", ""}), Limits::none()).empty());
 }
 
 TEST(Budget, GrowsByOneMeshAtATimeToThatOfAll)

@@ -55,9 +55,11 @@ std::vector<Fault> faults_of(const SceneDescription& scene,
     return faults != nullptr ? *faults : std::vector<Fault>{};
 }
 
-Plan plan_of(const SceneDescription& scene, const std::vector<MeshFacts>& meshes)
+Plan plan_of(const SceneDescription& scene,
+             const std::vector<MeshFacts>& meshes,
+             const RenderSettings& settings = {})
 {
-    const auto result = make_plan(assume_defaults(scene, meshes, 4.0 / 3), meshes, {}, {});
+    const auto result = make_plan(assume_defaults(scene, meshes, 4.0 / 3), meshes, settings, {});
     EXPECT_TRUE(std::holds_alternative<Plan>(result));
     return std::get<Plan>(result);
 }
@@ -307,6 +309,30 @@ TEST(MakePlan, TellsOfTwoLevelsOnlyWhereOneTreeStandsOverOthers)
     EXPECT_FALSE(told(scene));
     scene.objects.push_back(scene.objects[0]);
     EXPECT_TRUE(told(scene));
+}
+
+TEST(MakePlan, TellsWhatAccelerationIsAskedToLeaveOut)
+{
+    SceneDescription scene = one_mesh();
+    scene.objects.emplace_back().shape = renderer::BoxShape{};
+    RenderSettings settings;
+    settings.image.width_px = settings.image.height_px = 100;
+    settings.quality.samples = 5;
+    settings.acceleration.levels = renderer::BvhLevels::mesh;
+    settings.acceleration.split = renderer::BvhSplit::midpoint;
+    settings.acceleration.width = renderer::BvhWidth::binary;
+    const Plan plan = plan_of(scene, {cube_facts()}, settings);
+    EXPECT_THAT(names(plan.models.used), IsSupersetOf({"object_list", "binary_bvh", "midpoint_split"}));
+    EXPECT_THAT(names(plan.models.skipped), Contains("two_level_bvh"));
+
+    settings.acceleration.levels = renderer::BvhLevels::none;
+    const Plan none = plan_of(scene, {cube_facts()}, settings);
+    EXPECT_THAT(names(none.models.used), Not(Contains("binary_bvh")));
+    const auto& used = none.models.used;
+    const auto list = std::find_if(
+        used.begin(), used.end(), [](const ModelChoice& c) { return c.name == "triangle_list"; });
+    ASSERT_NE(list, used.end());
+    EXPECT_THAT(list->why, HasSubstr("24 in all: 1.2e+06 tests")); // 100 x 100 pixels, 5 samples, two boxes
 }
 
 TEST(MakePlan, ListsAThousandFaultsAndCountsTheOthers)

@@ -118,7 +118,7 @@ TEST(Scene, IsNotMadeOnceAStopIsRequested)
     test.description.objects[0].shape = MeshShape{0, "right"};
     const std::vector facts{facts_of(test.meshes[0])};
     const AssumedScene assumed = assume_defaults(test.description, facts, 1);
-    const std::vector prepared{prepare_mesh(test.meshes[0], BvhSplit::sah, pool)};
+    const std::vector prepared{prepare_mesh(test.meshes[0], MeshTree::wide_sah, pool)};
     std::stop_source stop;
     EXPECT_TRUE(prepare(assumed, Plan{}, prepared, test.settings, pool, stop.get_token()));
     stop.request_stop();

@@ -13,7 +13,7 @@ std::shared_ptr<const renderer::PreparedMesh> prepared(std::size_t triangles = 1
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.triangles.assign(triangles, {0, 1, 2});
     renderer::ThreadPool pool(1);
-    return prepare_mesh(std::move(mesh), renderer::BvhSplit::sah, pool);
+    return prepare_mesh(std::move(mesh), renderer::MeshTree::wide_sah, pool);
 }
 
 KnownImport known(const std::string& main, const server::NamedDigests& answers = {}, bool with_mesh = true)

@@ -172,13 +172,13 @@ TEST_F(ImportServiceTest, StopsWhenAskedAndImportsTheNextTime)
     EXPECT_EQ(code(request), "ok");
 }
 
-TEST_F(ImportServiceTest, PreparesForEachSplit)
+TEST_F(ImportServiceTest, PreparesForEachTree)
 {
     const std::string digest = put(kTriangle);
-    EXPECT_EQ(code({"a.obj", digest, {}, renderer::BvhSplit::sah}), "ok");
+    EXPECT_EQ(code({"a.obj", digest, {}, renderer::MeshTree::wide_sah}), "ok");
     const std::uint64_t one = imports_.cached_bytes();
-    EXPECT_EQ(code({"a.obj", digest, {}, renderer::BvhSplit::midpoint}), "ok");
-    EXPECT_EQ(code({"a.obj", digest, {}, renderer::BvhSplit::sah}), "ok");
+    EXPECT_EQ(code({"a.obj", digest, {}, renderer::MeshTree::none}), "ok");
+    EXPECT_EQ(code({"a.obj", digest, {}, renderer::MeshTree::wide_sah}), "ok");
     EXPECT_GT(imports_.cached_bytes(), one);
     EXPECT_EQ(imports_.imports_run(), 2u);
 }
