@@ -7,6 +7,7 @@ class App;
 
 namespace bench {
 
+void add_evaluation(CLI::App& app);
 void add_leaks(CLI::App& app);
 void add_rays(CLI::App& app);
 void add_service(CLI::App& app);
