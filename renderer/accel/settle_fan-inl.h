@@ -205,7 +205,8 @@ private:
         auto plain = hn::Le(off, hn::Mul(hn::Set(d, gamma<double>(16)), widest));
         plain = hn::And(plain,
                         hn::And(hn::Le(hn::Abs(sx), hn::Set(d, 1.0)), hn::Le(hn::Abs(sy), hn::Set(d, 1.0))));
-        plain = hn::And(plain, hn::Ge(hn::Min(w[0], hn::Min(w[1], w[2])), hn::Zero(d)));
+        // An edge at 0 is looked at once more by its exact products.
+        plain = hn::And(plain, hn::Gt(hn::Min(w[0], hn::Min(w[1], w[2])), hn::Zero(d)));
         plain = hn::And(plain,
                         hn::And(hn::Lt(hn::Mul(hn::Load(d, from), inverse), t),
                                 hn::Lt(t, hn::Mul(hn::Load(d, to), inverse))));

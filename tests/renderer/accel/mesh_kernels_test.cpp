@@ -13,6 +13,7 @@ using namespace renderer;
 using namespace renderer::mesh_rays;
 
 constexpr unsigned kRun = MeshKernels::kMostRays;
+constexpr std::uint64_t kAllOfThem = ~std::uint64_t{0} >> (64 - kRun);
 
 class EveryMeshKernel : public testing::TestWithParam<MeshKernels> {
 protected:
@@ -293,7 +294,7 @@ TEST_P(EveryMeshKernel, FindsEachCellOfAPlaneFromAMillionAway)
                 const Vec3d origin = centroid + away * 1e6;
                 rays.push_back({origin, centroid - origin});
             }
-            ASSERT_EQ(bvh.closest_hits(rays, hits, GetParam()), 0xffffu);
+            ASSERT_EQ(bvh.closest_hits(rays, hits, GetParam()), kAllOfThem);
             for (std::uint32_t i = 0; i < kRun; ++i) {
                 ASSERT_EQ(hits[i].primitive, first + i);
                 ASSERT_EQ(bvh.closest_hit(rays[i], GetParam())->primitive, first + i);
@@ -335,7 +336,7 @@ TEST_P(EveryMeshKernel, HoldsAtTheDiagonalOfAQuad)
         ASSERT_TRUE(hit);
         EXPECT_LT(length(ray.at(hit->t) - stand - Vec3d{3.375, 3.375, 0}), 1e-7);
         const std::vector<Ray> run(kRun, ray);
-        EXPECT_EQ(build(moved(quad, stand)).any_hits(run, GetParam()), 0xffffu);
+        EXPECT_EQ(build(moved(quad, stand)).any_hits(run, GetParam()), kAllOfThem);
     }
 }
 
@@ -360,7 +361,7 @@ TEST_P(EveryMeshKernel, HoldsWhereSixMeet)
                 const Vec3d origin = hub + Vec3d{random.uniform(-8, 8), random.uniform(-8, 8), 32};
                 rays.push_back({origin, hub - origin});
             }
-            ASSERT_EQ(bvh.any_hits(rays, GetParam()), 0xffffu);
+            ASSERT_EQ(bvh.any_hits(rays, GetParam()), kAllOfThem);
             for (Ray& ray : rays) {
                 int crossings = 0;
                 while (const auto hit = bvh.closest_hit(ray, GetParam())) {
