@@ -10,6 +10,23 @@
 
 namespace renderer {
 
+// Apart, so that a mesh of floats does not pay for it.
+[[gnu::noinline]] inline std::optional<TriangleHit<double>>
+intersect_with_residuals(const WatertightRay<double>& ray,
+                         double t_min,
+                         double t_max,
+                         const TriangleBlock& block,
+                         const CornerResiduals& lacking,
+                         unsigned lane)
+{
+    return intersect_watertight(ray,
+                                t_min,
+                                t_max,
+                                block.corner(0, lane) + lacking.corner(0, lane),
+                                block.corner(1, lane) + lacking.corner(1, lane),
+                                block.corner(2, lane) + lacking.corner(2, lane));
+}
+
 // True where the triangle became the best hit; t in kernel units. No hit yet: t infinite, primitive kNone.
 inline bool improve_hit(const WatertightRay<double>& ray,
                         double t_min,
@@ -21,14 +38,11 @@ inline bool improve_hit(const WatertightRay<double>& ray,
 {
     const std::uint32_t primitive = block.primitive[lane];
     if (primitive == TriangleBlock::kNone) return false;
-    Vec3d a = block.corner(0, lane), b = block.corner(1, lane), c = block.corner(2, lane);
-    if (mesh.residuals != nullptr) {
-        const CornerResiduals& lacking = mesh.residuals[&block - mesh.leaves];
-        a = a + lacking.corner(0, lane);
-        b = b + lacking.corner(1, lane);
-        c = c + lacking.corner(2, lane);
-    }
-    const auto hit = intersect_watertight(ray, t_min, t_max, a, b, c);
+    const auto hit =
+        mesh.residuals == nullptr
+            ? intersect_watertight(
+                  ray, t_min, t_max, block.corner(0, lane), block.corner(1, lane), block.corner(2, lane))
+            : intersect_with_residuals(ray, t_min, t_max, block, mesh.residuals[&block - mesh.leaves], lane);
     if (!hit || hit->t > best.t || (hit->t == best.t && primitive > best.primitive)) return false;
     best = {hit->t, primitive, hit->barycentrics};
     return true;

@@ -149,18 +149,23 @@ Vec3<T> draw_onto_ray(Vec3<T> weights, const Corner<T>& a, const Corner<T>& b, c
 
 } // namespace watertight
 
-// For many triangles: the ray is traceable and the triangle not degenerate, as the caller has seen to.
+// For many triangles: the ray is traceable and the triangle not degenerate, as the caller has seen to. Inlined: as a
+// call it takes a twentieth more of a ray's instructions.
 template <typename T>
-std::optional<TriangleHit<T>>
+[[gnu::always_inline]] inline std::optional<TriangleHit<T>>
 intersect_watertight(const WatertightRay<T>& ray, T t_min, T t_max, Vec3<T> a, Vec3<T> b, Vec3<T> c)
 {
     namespace wt = watertight;
     const wt::Corner<T> pa = wt::shear(ray, a), pb = wt::shear(ray, b), pc = wt::shear(ray, c);
     Vec3<T> e{wt::edge(pb, pc), wt::edge(pc, pa), wt::edge(pa, pb)};
-    if (e.x == 0) e.x = wt::exact_edge(pb, pc);
-    if (e.y == 0) e.y = wt::exact_edge(pc, pa);
-    if (e.z == 0) e.z = wt::exact_edge(pa, pb);
-    if ((e.x < 0 || e.y < 0 || e.z < 0) && (e.x > 0 || e.y > 0 || e.z > 0)) return std::nullopt;
+    const auto beside = [&e] { return (e.x < 0 || e.y < 0 || e.z < 0) && (e.x > 0 || e.y > 0 || e.z > 0); };
+    if (beside()) return std::nullopt;
+    if (e.x * e.y * e.z == 0) { // some are 0, or almost
+        if (e.x == 0) e.x = wt::exact_edge(pb, pc);
+        if (e.y == 0) e.y = wt::exact_edge(pc, pa);
+        if (e.z == 0) e.z = wt::exact_edge(pa, pb);
+        if (beside()) return std::nullopt;
+    }
     const T det = e.x + e.y + e.z;
     if (det == 0) return std::nullopt;
     const T inv_det = 1 / det;
