@@ -123,7 +123,7 @@ TEST(InstanceTree, AnswersARunAsItsRaysOneByOne)
             const std::size_t size = 1 + random.below(InstanceTree::kMostRays);
             for (const InstanceTree* asked : {&tree, &list, &boxes}) {
                 SceneHit found[InstanceTree::kMostRays];
-                const std::uint32_t hit = asked->closest_hits({rays, size}, found),
+                const std::uint64_t hit = asked->closest_hits({rays, size}, found),
                                     met = asked->any_hits({rays, size});
                 for (std::size_t r = 0; r < size; ++r) {
                     const auto expected = tree.closest_hit_brute_force(rays[r]);
