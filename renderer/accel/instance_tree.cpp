@@ -2,6 +2,7 @@
 
 #include "renderer/accel/traverse.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace renderer {
@@ -20,33 +21,38 @@ struct InstanceTree::Best {
     }
 };
 
-std::vector<InstanceTree::Listed> InstanceTree::with_something_to_hit()
-{
-    std::vector<Listed> found;
-    for (std::uint32_t i = 0; i < instances_.size(); ++i) {
-        const Bounds3d box = instances_[i].world_bounds();
-        if (box.empty()) continue;
-        bounds_.extend(box);
-        found.push_back({i, box});
-    }
-    return found;
-}
-
 InstanceTree::InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool)
     : InstanceTree(std::move(instances))
 {
-    const std::vector<Listed> there = with_something_to_hit();
-    PlainArray<BuildItem<double>> items(there.size());
-    for (std::size_t i = 0; i < there.size(); ++i)
-        items[i] = {there[i].box.lower, there[i].number, there[i].box.upper};
+    PlainArray<BuildItem<double>> items(instances_.size());
+    constexpr std::size_t kShare = 1024; // instances that a thread takes at once
+    pool.run((items.size() + kShare - 1) / kShare, [&](std::size_t share, unsigned) {
+        for (std::size_t i = share * kShare; i < std::min(items.size(), (share + 1) * kShare); ++i) {
+            const Bounds3d box = instances_[i].world_bounds();
+            items[i] = {box.lower, static_cast<std::uint32_t>(i), box.upper};
+        }
+    });
+    std::size_t count = 0;
+    for (const BuildItem<double>& item : items) {
+        const Bounds3d box{item.lower, item.upper};
+        if (box.empty()) continue;
+        bounds_.extend(box);
+        items[count++] = item;
+    }
+    items.shorten(count);
     bvh_ = *build_bvh<double>(std::move(items), {.split = split, .leaf_size = 1}, pool);
 }
 
 InstanceTree InstanceTree::list(std::vector<Instance> instances, bool boxes_first)
 {
     InstanceTree tree(std::move(instances));
-    tree.listed_ = tree.with_something_to_hit();
     tree.boxes_first_ = boxes_first;
+    for (std::uint32_t i = 0; i < tree.instances_.size(); ++i) {
+        const Bounds3d box = tree.instances_[i].world_bounds();
+        if (box.empty()) continue;
+        tree.bounds_.extend(box);
+        tree.listed_.push_back({i, box});
+    }
     return tree;
 }
 

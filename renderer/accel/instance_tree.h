@@ -52,7 +52,6 @@ private:
     template <bool kAnyHit>
     class RunWalk;
     explicit InstanceTree(std::vector<Instance> instances) : instances_(std::move(instances)) {}
-    std::vector<Listed> with_something_to_hit(); // and the bounds of all
     // Calls ask(instance) until it returns true, for those in the list that the ray may hit before `end`.
     template <typename Ask>
     void ask_listed(const Ray& ray, const double& end, Ask&& ask) const;

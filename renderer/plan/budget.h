@@ -20,12 +20,19 @@ namespace renderer {
 // Results that wait to be merged in their order: render() keeps below this, whatever threads and tiles.
 inline constexpr std::uint64_t kMergeBytes = 32u << 20;
 
+// A tree over so many triangles: its nodes and leaves, and what is held beside them at most while it is built.
+std::uint64_t tree_bytes(std::uint64_t triangles);
+std::uint64_t tree_building_bytes(std::uint64_t triangles);
+// The same for each object of the upper level.
+inline constexpr std::uint64_t kInstanceBytes = 372, kInstanceBuildingBytes = 150;
+
 struct Budget {
     std::uint64_t pixels = 0;           // of the region that is rendered
     std::uint64_t triangles = 0;        // each mesh counted once
     std::uint64_t listed_triangles = 0; // that every ray is tested against, where no tree is asked for
     std::uint64_t film_bytes = 0;       // sums, results on their way to them, the finished picture, its PNG
     std::uint64_t mesh_bytes = 0;       // vertices, indices, a BVH for each mesh and each different part
+    std::uint64_t building_bytes = 0;   // for the largest of the trees, before there is a film
 };
 
 Budget

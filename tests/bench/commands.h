@@ -9,6 +9,7 @@ namespace bench {
 
 void add_evaluation(CLI::App& app);
 void add_leaks(CLI::App& app);
+void add_memory(CLI::App& app);
 void add_rays(CLI::App& app);
 void add_service(CLI::App& app);
 void add_terrain(CLI::App& app);

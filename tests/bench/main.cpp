@@ -11,6 +11,7 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     bench::add_evaluation(app);
     bench::add_leaks(app);
+    bench::add_memory(app);
     bench::add_rays(app);
     bench::add_service(app);
     bench::add_terrain(app);

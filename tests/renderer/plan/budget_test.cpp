@@ -1,7 +1,12 @@
+#include "renderer/accel/mesh_bvh.h"
 #include "renderer/plan/budget.h"
+#include "tests/renderer/accel/random_scenes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
 
 using namespace testing;
 using renderer::Budget;
@@ -49,8 +54,8 @@ TEST(Budget, CountsATreeForEveryDifferentPart)
 {
     const std::uint64_t whole = mesh_bytes({""}), one = mesh_bytes({"part1"}),
                         two = mesh_bytes({"part1", "part2"});
-    EXPECT_GT(one, whole + 100ull * kTriangles);
-    EXPECT_GT(two, one + 100ull * kTriangles);
+    EXPECT_GT(one, whole + renderer::tree_bytes(kTriangles - 1));
+    EXPECT_GT(two, one + renderer::tree_bytes(kTriangles - 2));
 }
 
 TEST(Budget, CountsOneTreeForPartsOfTheSameTriangles)
@@ -109,4 +114,51 @@ TEST(Budget, GrowsByOneMeshAtATimeToThatOfAll)
     EXPECT_EQ(budget.triangles, all.triangles);
     EXPECT_EQ(budget.mesh_bytes, all.mesh_bytes);
     EXPECT_EQ(budget.film_bytes, all.film_bytes);
+}
+
+TEST(Budget, CountsWhatTheLargestTreeTakesToBuildOnce)
+{
+    const SceneDescription scene = scene_of({""});
+    MeshFacts small = nested();
+    small.triangles = 1000;
+    const Budget budget = predict(scene, std::vector{small, nested(), small}, {});
+    EXPECT_EQ(budget.building_bytes, renderer::tree_building_bytes(kTriangles));
+}
+
+TEST(Budget, RefusesATreeThatCouldNotBeBuilt)
+{
+    Limits limits;
+    limits.render_memory_bytes =
+        100'000'000; // the tree itself would fit beside the picture, building it does not
+    renderer::RenderSettings settings;
+    settings.image.width_px = settings.image.height_px = 16;
+    MeshFacts facts;
+    facts.triangles = 10 * kTriangles;
+    FaultList faults;
+    const Budget budget = predict(scene_of({""}), std::vector{facts}, settings);
+    ASSERT_LT(budget.mesh_bytes + budget.film_bytes, limits.render_memory_bytes);
+    check_budget(budget, limits, faults);
+    const auto found = faults.take();
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].pointer, "/scene/objects");
+    EXPECT_THAT(found[0].detail,
+                StartsWith(std::to_string(budget.mesh_bytes + budget.building_bytes) + " bytes of memory"));
+}
+
+// The estimate is held against trees of several kinds.
+TEST(Budget, KnowsWithinATenthWhatTreesHold)
+{
+    renderer::random_scenes::Random random(1);
+    renderer::ThreadPool pool(1);
+    for (const renderer::Mesh& mesh :
+         {renderer::random_scenes::grid(150, 1),
+          renderer::random_scenes::closed_sphere(random, {0, 0, 0}, 1, 1.01, 150, 150),
+          renderer::random_scenes::soup(random, 45000, 1, 0.3)}) {
+        const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+        const auto tree = renderer::MeshBvh::build(mesh, {0, count}, renderer::BvhSplit::sah, pool);
+        const double ratio =
+            static_cast<double>(renderer::tree_bytes(count)) / static_cast<double>(tree->size_bytes());
+        EXPECT_GT(ratio, 0.9);
+        EXPECT_LT(ratio, 1.1);
+    }
 }

@@ -1,0 +1,160 @@
+// heliograph-bench memory: what trees hold and what building them takes at most, as predicted and as the system
+// counts it; of one large mesh, or of many instances of a small one.
+#include "renderer/accel/instance_tree.h"
+#include "renderer/accel/prepared_mesh.h"
+#include "renderer/math/transcendental.h"
+#include "renderer/plan/budget.h"
+#include "tests/bench/commands.h"
+#include "tests/bench/stopwatch.h"
+#include "tests/bench/terrain.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <malloc.h>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace bench {
+
+namespace {
+
+using namespace renderer;
+
+struct Options {
+    std::uint64_t triangles = 1'000'000;
+    std::uint32_t instances = 0;
+    unsigned threads = 1;
+};
+
+// Of this process, in bytes.
+std::uint64_t status_bytes(const std::string& name)
+{
+    std::ifstream file("/proc/self/status");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with(name + ":")) return 1024 * std::stoull(line.substr(name.size() + 1));
+    throw std::runtime_error("/proc/self/status says nothing of " + name);
+}
+
+// What is resident more than at the start: now, and at most since then.
+class Growth {
+public:
+    Growth()
+    {
+        malloc_trim(0);
+        before_ = status_bytes("VmRSS");
+        std::ofstream("/proc/self/clear_refs") << "5"; // the peak starts anew
+    }
+    std::uint64_t most() const { return status_bytes("VmHWM") - before_; }
+    std::uint64_t kept() const
+    {
+        malloc_trim(0);
+        return status_bytes("VmRSS") - before_;
+    }
+
+private:
+    std::uint64_t before_;
+};
+
+void print(const char* what, std::uint64_t predicted, std::uint64_t measured, std::uint64_t things)
+{
+    const auto a = static_cast<double>(predicted), b = static_cast<double>(measured);
+    std::printf("%-24s predicted %8.1f MB, measured %8.1f MB, %6.1f bytes each, predicted/measured %.3f\n",
+                what,
+                a / 1e6,
+                b / 1e6,
+                b / static_cast<double>(things),
+                a / b);
+}
+
+void measure_mesh(const std::shared_ptr<const PreparedMesh>& mesh, const Growth& growth)
+{
+    const std::uint64_t triangles = mesh_of(*mesh).triangles.size();
+    print("tree, while it is built",
+          tree_bytes(triangles) + tree_building_bytes(triangles),
+          growth.most(),
+          triangles);
+    print("tree", tree_bytes(triangles), growth.kept(), triangles);
+}
+
+// Instances in the cells of a cube, each turned its own way.
+std::vector<Instance> instances_of(const PreparedMesh& mesh, std::uint32_t count)
+{
+    const auto side = static_cast<std::uint32_t>(std::ceil(std::cbrt(count)));
+    std::vector<Instance> instances;
+    instances.reserve(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec3d at{3.0 * (i % side), 3.0 * (i / side % side), 3.0 * (i / side / side)};
+        const Affine3 turned = Affine3::rotate_deg(static_cast<double>(i * 37 % 360), {1, 2, 3});
+        instances.push_back(
+            Instance::place(MeshGeometry{&mesh_of(mesh), &bvh_of(mesh)}, Affine3::translate(at) * turned)
+                .value());
+    }
+    return instances;
+}
+
+// Rays from within the bounds in all directions.
+double million_rays_a_second(const InstanceTree& tree)
+{
+    constexpr unsigned kRuns = 20000, kRays = 16;
+    const Vec3d low = tree.bounds().lower, extent = tree.bounds().extent();
+    std::uint64_t state = 1;
+    const auto uniform = [&state] {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return static_cast<double>(state >> 11) * 0x1p-53;
+    };
+    Ray rays[kRays];
+    SceneHit hits[kRays];
+    double seconds = 0;
+    for (unsigned run = 0; run < kRuns; ++run) {
+        for (Ray& ray : rays)
+            ray = Ray{low + Vec3d{extent.x * uniform(), extent.y * uniform(), extent.z * uniform()},
+                      {2 * uniform() - 1, 2 * uniform() - 1, 2 * uniform() - 1}};
+        const Stopwatch watch(CLOCK_THREAD_CPUTIME_ID);
+        tree.closest_hits(rays, hits);
+        seconds += watch.spent().cpu_s;
+    }
+    return kRuns * kRays / seconds / 1e6;
+}
+
+void run(const Options& options)
+{
+    ThreadPool pool(options.threads);
+    Mesh made = terrain_mesh(options.triangles);
+    const Growth of_mesh;
+    const auto mesh = prepare_mesh(std::move(made), BvhSplit::sah, pool);
+    if (options.instances == 0) return measure_mesh(mesh, of_mesh);
+    const Growth growth;
+    const InstanceTree tree(instances_of(*mesh, options.instances), BvhSplit::sah, pool);
+    std::printf("%u instances of %llu triangles: %.1f million\n",
+                options.instances,
+                static_cast<unsigned long long>(options.triangles),
+                static_cast<double>(options.instances) * static_cast<double>(options.triangles) / 1e6);
+    const std::uint64_t predicted = options.instances * kInstanceBytes;
+    print("instances, being built",
+          predicted + options.instances * kInstanceBuildingBytes,
+          growth.most(),
+          options.instances);
+    print("instances", predicted, growth.kept(), options.instances);
+    std::printf("%.3f million rays a second of processor time\n", million_rays_a_second(tree));
+}
+
+} // namespace
+
+void add_memory(CLI::App& app)
+{
+    CLI::App* const command =
+        app.add_subcommand("memory", "memory of trees and of building them, as predicted and as measured");
+    const auto options = std::make_shared<Options>();
+    command->add_option("--triangles", options->triangles, "of the mesh")->capture_default_str();
+    command->add_option("--instances", options->instances, "of the mesh; 0: the mesh alone")
+        ->capture_default_str();
+    command->add_option("--threads", options->threads, "that build")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    command->callback([options] { run(*options); });
+}
+
+} // namespace bench
