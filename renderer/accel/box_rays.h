@@ -7,6 +7,7 @@
 #include "renderer/geometry/box.h"
 #include "renderer/geometry/ray.h"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -44,6 +45,22 @@ struct BoxRays {
             end[i] = traceable ? ray.t_max : -std::numeric_limits<double>::infinity();
             if (traceable) rays |= std::uint64_t{1} << i;
         }
+    }
+
+    SlabRay<double> one(unsigned ray) const
+    {
+        const auto gather = [ray](const Lanes<double>(&of)[3]) {
+            return Vec3d{of[0][ray], of[1][ray], of[2][ray]};
+        };
+        SlabRay<double> slabs;
+        slabs.near_origin = gather(near_origin);
+        slabs.far_origin = gather(far_origin);
+        slabs.near_inverse = gather(near_inverse);
+        slabs.far_inverse = gather(far_inverse);
+        slabs.negative_x = std::signbit(slabs.near_inverse.x);
+        slabs.negative_y = std::signbit(slabs.near_inverse.y);
+        slabs.negative_z = std::signbit(slabs.near_inverse.z);
+        return slabs;
     }
 };
 

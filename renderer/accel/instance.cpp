@@ -2,7 +2,9 @@
 
 #include "renderer/geometry/rounding.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace renderer {
 
@@ -14,6 +16,24 @@ struct Overloaded : Ts... {
 };
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
+
+Affine3 absolute(const Affine3& m)
+{
+    return {{abs(m.rows[0]), abs(m.rows[1]), abs(m.rows[2])}, abs(m.translation)};
+}
+
+// Of terms that are not negative: what has overflowed would be no number times zero.
+Affine3 at_most_finite(Affine3 m)
+{
+    const auto bounded = [](Vec3d v) {
+        constexpr double kMost = std::numeric_limits<double>::max();
+        return Vec3d{std::min(v.x, kMost), std::min(v.y, kMost), std::min(v.z, kMost)};
+    };
+    for (Vec3d& row : m.rows)
+        row = bounded(row);
+    m.translation = bounded(m.translation);
+    return m;
+}
 
 // |M| v + |t| and |M| v: how large the terms of a transform can be for |p| <= v.
 Vec3d reach_of_vector(const Affine3& m, Vec3d v)
@@ -51,6 +71,7 @@ Instance::Instance(InstanceGeometry geometry,
                    const Affine3& object_from_world,
                    bool visible_to_camera)
     : geometry_(geometry), world_from_object_(world_from_object), object_from_world_(object_from_world),
+      trip_error_(error_of_round_trip(world_from_object, object_from_world)),
       identity_(world_from_object == Affine3{}), visible_to_camera_(visible_to_camera)
 {
 }
@@ -64,12 +85,25 @@ Instance::place(InstanceGeometry geometry, const Affine3& world_from_object, boo
 }
 
 // How far a world point within `world_reach` of the origin may be off after the trip to object space, told in
-// the world; the inverse matrix is itself only as good as the forward one lets it be.
+// the world; the inverse matrix is itself only as good as the forward one lets it be. With absolute values
+// throughout, W to the world and O from it, that is gamma (W + W O W) O of the point: made once, with room for its own
+// roundings.
+Affine3 Instance::error_of_round_trip(const Affine3& world_from_object, const Affine3& object_from_world)
+{
+    const Affine3 there = absolute(world_from_object), back = absolute(object_from_world);
+    const Affine3 linear_there{there.rows, {}}, linear_back{back.rows, {}};
+    const Affine3 once = at_most_finite(linear_there * back);
+    const Affine3 again = at_most_finite(linear_there * at_most_finite(linear_back * once));
+    Affine3 sum;
+    for (std::size_t i = 0; i < 3; ++i)
+        sum.rows[i] = (once.rows[i] + again.rows[i]) * gamma<double>(13);
+    sum.translation = (once.translation + again.translation) * gamma<double>(13);
+    return at_most_finite(sum);
+}
+
 Vec3d Instance::round_trip_error(Vec3d world_reach) const
 {
-    const Vec3d there = reach_of_vector(world_from_object_, reach_of_point(object_from_world_, world_reach));
-    const Vec3d matrix = reach_of_vector(world_from_object_, reach_of_vector(object_from_world_, there));
-    return (there + matrix) * gamma<double>(12);
+    return trip_error_.point(world_reach);
 }
 
 Bounds3d Instance::world_bounds() const
@@ -165,10 +199,12 @@ std::uint64_t Instance::any_hits(std::span<const Ray> world_rays) const
 SurfacePoint Instance::to_world(const SurfacePoint& object_point) const
 {
     if (identity_) return object_point;
-    const Vec3d reach = reach_of_point(world_from_object_, abs(object_point.position));
     SurfacePoint world;
     world.position = world_from_object_.point(object_point.position);
-    world.error = reach_of_vector(world_from_object_, object_point.error) + reach * gamma<double>(4) +
+    // The point's own error, and the roundings of this transform.
+    const Vec3d error = object_point.error + abs(object_point.position) * gamma<double>(5);
+    world.error = reach_of_vector(world_from_object_, error) +
+                  abs(world_from_object_.translation) * gamma<double>(5) +
                   round_trip_error(abs(world.position));
     world.normal = normalize(object_from_world_.transposed_vector(object_point.normal));
     return world;

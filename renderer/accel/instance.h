@@ -77,9 +77,11 @@ private:
     Ray to_object(const Ray& world_ray) const;
     SurfacePoint to_world(const SurfacePoint& object_point) const;
     Vec3d round_trip_error(Vec3d world_reach) const;
+    static Affine3 error_of_round_trip(const Affine3& world_from_object, const Affine3& object_from_world);
 
     InstanceGeometry geometry_;
     Affine3 world_from_object_, object_from_world_;
+    Affine3 trip_error_; // see round_trip_error
     bool identity_;
     bool visible_to_camera_;
 };

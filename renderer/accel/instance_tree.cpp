@@ -3,6 +3,7 @@
 #include "renderer/accel/traverse.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace renderer {
@@ -177,6 +178,8 @@ public:
             double entry;
         };
         if (tree_.bvh_.empty()) return walk_list();
+        const bool many = tree_.bvh_.order.size() >= kMany;
+        if (many && are_to_part()) return follow_each(boxes_.rays, &tree_.bvh_.root);
         Waiting stack[2 * kMaxBvhDepth];
         unsigned waiting = 0;
         const auto enter = [&](const BvhNode<double>& node) {
@@ -188,8 +191,12 @@ public:
         while (waiting != 0) {
             const Waiting next = stack[--waiting];
             if (next.node->count != 0) {
-                for (std::uint32_t i = 0; i < next.node->count; ++i)
-                    ask(tree_.bvh_.order[next.node->first + i], next.rays);
+                ask_leaf(*next.node, next.rays);
+                if (kAnyHit && found_ == boxes_.rays) return;
+                continue;
+            }
+            if (many && std::popcount(next.rays) <= kFew) {
+                follow_each(next.rays, next.node);
                 if (kAnyHit && found_ == boxes_.rays) return;
                 continue;
             }
@@ -215,6 +222,72 @@ private:
             if (kAnyHit && found_ == boxes_.rays) return;
         }
     }
+
+    // Among so many instances rays part before they arrive: those that do not run alike are quicker one by one. Among
+    // fewer, what counts is that a mesh gets many of them at once.
+    static constexpr std::size_t kMany = 64;
+    static constexpr int kFew = 5; // that part from the others on the way
+
+    bool are_to_part() const
+    {
+        std::uint64_t negative[3]{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (unsigned i = 0; i < boxes_.lanes; ++i)
+                negative[axis] |= std::uint64_t{std::signbit(boxes_.near_inverse[axis][i])} << i;
+        return std::any_of(negative, negative + 3, [&](std::uint64_t rays) {
+            return (rays & boxes_.rays) != 0 && (rays & boxes_.rays) != boxes_.rays;
+        });
+    }
+    void follow_each(std::uint64_t rays, const BvhNode<double>* from)
+    {
+        for (; rays != 0; rays &= rays - 1)
+            follow_one(static_cast<unsigned>(std::countr_zero(rays)), from);
+    }
+
+    void ask_leaf(const BvhNode<double>& leaf, std::uint64_t rays)
+    {
+        for (std::uint32_t i = 0; i < leaf.count; ++i)
+            ask(tree_.bvh_.order[leaf.first + i], rays);
+    }
+
+    // One ray through what is below a node, nearest boxes first.
+    void follow_one(unsigned ray, const BvhNode<double>* node)
+    {
+        struct Waiting {
+            const BvhNode<double>* node;
+            double entry;
+        };
+        const SlabRay<double> slabs = boxes_.one(ray);
+        const double begin = boxes_.begin[ray];
+        const double& end = boxes_.end[ray]; // drawn in by hits
+        Waiting stack[kMaxBvhDepth];
+        unsigned waiting = 0;
+        double entry[2]{}, exit{};
+        for (;;) {
+            if (node->count == 0) {
+                const BvhPair<double>& pair = tree_.bvh_.pairs[node->first];
+                bool met[2];
+                for (std::size_t i = 0; i < 2; ++i)
+                    met[i] =
+                        slabs.meets(pair.child[i].lower, pair.child[i].upper, begin, end, entry[i], exit);
+                const std::size_t nearer = met[1] && (!met[0] || entry[1] < entry[0]) ? 1 : 0;
+                if (met[1 - nearer]) stack[waiting++] = {&pair.child[1 - nearer], entry[1 - nearer]};
+                if (met[nearer]) {
+                    node = &pair.child[nearer];
+                    continue;
+                }
+            } else {
+                ask_leaf(*node, std::uint64_t{1} << ray);
+                if (kAnyHit && (found_ >> ray & 1) != 0) return;
+            }
+            do {
+                if (waiting == 0) return;
+                --waiting;
+            } while (stack[waiting].entry > end);
+            node = stack[waiting].node;
+        }
+    }
+
     // `rays` may be done by now, all the same: what they find is no better.
     void ask(std::uint32_t number, std::uint64_t rays)
     {

@@ -24,7 +24,7 @@ inline constexpr std::uint64_t kMergeBytes = 32u << 20;
 std::uint64_t tree_bytes(std::uint64_t triangles);
 std::uint64_t tree_building_bytes(std::uint64_t triangles);
 // The same for each object of the upper level.
-inline constexpr std::uint64_t kInstanceBytes = 372, kInstanceBuildingBytes = 150;
+inline constexpr std::uint64_t kInstanceBytes = 468, kInstanceBuildingBytes = 150;
 
 struct Budget {
     std::uint64_t pixels = 0;           // of the region that is rendered

@@ -142,6 +142,74 @@ TEST(InstanceTree, AnswersARunAsItsRaysOneByOne)
     EXPECT_GT(hits, 300 / kThinning);
 }
 
+// Rays that run alike, a few that stray from them, and rays that have nothing in common.
+std::vector<Ray> run_of_rays(Random& random, int kind)
+{
+    const Vec3d eye = random.direction() * random.uniform(2, 20),
+                target = random.in_box({-3, -3, -3}, {3, 3, 3});
+    std::vector<Ray> rays;
+    for (unsigned i = 0; i < InstanceTree::kMostRays; ++i) {
+        const bool strays = kind == 2 || (kind == 1 && i % 5 == 0);
+        const Vec3d origin = strays ? random.direction() * random.uniform(0, 20) : eye;
+        const Vec3d at = strays ? random.in_box({-3, -3, -3}, {3, 3, 3})
+                                : target + random.in_box({-.1, -.1, -.1}, {.1, .1, .1});
+        Ray ray{origin, at - origin};
+        if (random.below(8) == 0) ray.t_max = random.uniform(0, 1);
+        if (random.below(16) == 0) ray.direction = {}; // no ray
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+TEST(InstanceTree, FindsForARunWhatBruteForceFindsForEachRay)
+{
+    Random random(2);
+    int hits = 0;
+    for (const int count : {2, 10, 63, 300}) {
+        Objects objects;
+        for (int i = 0; i < count; ++i)
+            add_random(objects, random, 3);
+        const InstanceTree tree = objects.tree();
+        for (int i = 0; i < 300 / kThinning; ++i) {
+            const std::vector<Ray> rays = run_of_rays(random, i % 3);
+            std::vector<SceneHit> found(rays.size());
+            const auto met = tree.closest_hits(rays, found), shadowed = tree.any_hits(rays);
+            for (std::size_t k = 0; k < rays.size(); ++k) {
+                const auto expected = tree.closest_hit_brute_force(rays[k]);
+                ASSERT_EQ((met >> k & 1) != 0, expected.has_value());
+                ASSERT_EQ((shadowed >> k & 1) != 0, expected.has_value());
+                if (!expected) continue;
+                ++hits;
+                ASSERT_EQ(found[k].t, expected->t);
+                ASSERT_EQ(found[k].instance, expected->instance);
+                ASSERT_EQ(found[k].primitive, expected->primitive);
+                ASSERT_EQ(found[k].point.position, expected->point.position);
+                ASSERT_EQ(found[k].point.error, expected->point.error);
+            }
+        }
+    }
+    EXPECT_GT(hits, 3000 / kThinning);
+}
+
+TEST(InstanceTree, IsTheSameOnAnyNumberOfThreads)
+{
+    Random random(3);
+    Objects objects;
+    for (int i = 0; i < 6000; ++i)
+        objects.add(Sphere{0.05}, random_placing(random, 3));
+    const InstanceTree one = objects.tree();
+    ThreadPool many(4);
+    const InstanceTree other({one.instances().begin(), one.instances().end()}, BvhSplit::sah, many);
+    EXPECT_EQ(one.bounds(), other.bounds());
+    EXPECT_EQ(one.size_bytes(), other.size_bytes());
+    for (int i = 0; i < 500; ++i) {
+        const Ray ray{random.direction() * 5.0, random.direction()};
+        const auto a = one.closest_hit(ray), b = other.closest_hit(ray);
+        ASSERT_EQ(a.has_value(), b.has_value());
+        if (a) ASSERT_EQ(a->instance, b->instance);
+    }
+}
+
 TEST(InstanceTree, PrefersTheLowestInstanceAmongEquals)
 {
     Objects objects;
