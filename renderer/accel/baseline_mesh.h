@@ -38,7 +38,7 @@ private:
 
     std::vector<TriangleBlock> blocks_;      // in scaled coordinates
     std::vector<CornerResiduals> residuals_; // one a block, where the mesh has them
-    Bvh<float> tree_;                   // a leaf's `first` is a block. Empty: a list
+    Bvh<float> tree_;                        // a leaf's `first` is a block. Empty: a list
     Bounds3f bounds_;
     float scale_ = 1; // as MeshBvh's
     std::uint64_t degenerate_ = 0;

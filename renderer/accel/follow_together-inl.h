@@ -201,7 +201,8 @@ private:
 
     HWY_INLINE bool decide(unsigned ray, const TriangleBlock& block, unsigned lane)
     {
-        if (!improve_hit(p_.exact(ray), p_.t_min[ray], p_.t_max[ray], mesh_, block, lane, best_[ray])) return false;
+        if (!improve_hit(p_.exact(ray), p_.t_min[ray], p_.t_max[ray], mesh_, block, lane, best_[ray]))
+            return false;
         hit_ |= 1u << ray;
         p_.end[ray] = kAnyHit ? -std::numeric_limits<float>::infinity()
                               : std::min(p_.end[ray], p_.end_for(best_[ray].t, ray));

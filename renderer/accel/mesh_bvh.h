@@ -46,6 +46,20 @@ public:
     {
         return kernels.any_hits(view(), rays.data(), static_cast<unsigned>(rays.size()));
     }
+    // Any number of rays that have nothing in common; a ray that misses gets the primitive TriangleBlock::kNone.
+    void closest_hits_apart(std::span<const Ray> rays,
+                            std::span<MeshHit> hits,
+                            const MeshKernels& kernels = mesh_kernels()) const
+    {
+        kernels.closest_hits_apart(view(), rays.data(), rays.size(), hits.data());
+    }
+    // As far as that one hits anything at all: a hit has some other primitive, and nothing else is told.
+    void any_hits_apart(std::span<const Ray> rays,
+                        std::span<MeshHit> hits,
+                        const MeshKernels& kernels = mesh_kernels()) const
+    {
+        kernels.any_hits_apart(view(), rays.data(), rays.size(), hits.data());
+    }
     // The same answers from every triangle in turn: for tests and for measuring.
     std::optional<MeshHit> closest_hit_brute_force(const Ray& ray) const;
     bool any_hit_brute_force(const Ray& ray) const;

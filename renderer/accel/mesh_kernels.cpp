@@ -36,25 +36,72 @@ HWY_BEFORE_NAMESPACE();
 namespace renderer::HWY_NAMESPACE {
 namespace {
 
+// Rays one by one. Those that miss: no primitive.
+template <bool kAnyHit>
+void trace_apart(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+{
+    LoneRays run;
+    prepare_apart(run, mesh, rays, count);
+    for (unsigned i = 0; i < count; ++i)
+        hits[i] = {std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
+    if (run.rays == 0) return;
+    LoneWalk<kAnyHit>(mesh, run, rays, hits).walk();
+    for (unsigned i = 0; i < count; ++i)
+        hits[i].t *= run.ray_units[i];
+}
+
+std::uint32_t found(const MeshHit* hits, unsigned count)
+{
+    std::uint32_t found = 0;
+    for (unsigned i = 0; i < count; ++i)
+        found |= (hits[i].primitive != TriangleBlock::kNone ? 1u : 0u) << i;
+    return found;
+}
+
+template <bool kAnyHit>
+void trace_many(const MeshView& mesh, const Ray* rays, std::size_t count, MeshHit* hits)
+{
+    for (std::size_t i = 0; i < count; i += LoneRays::kRays)
+        trace_apart<kAnyHit>(mesh,
+                             rays + i,
+                             static_cast<unsigned>(std::min<std::size_t>(LoneRays::kRays, count - i)),
+                             hits + i);
+}
+
+// A glance at a few rays of a run: false where they certainly do not run alike.
+bool may_run_alike(const Ray* rays, unsigned count)
+{
+    if (count < 4) return false;
+    const auto octant = [](const Ray& ray) {
+        return unsigned{std::signbit(ray.direction.x)} | unsigned{std::signbit(ray.direction.y)} << 1 |
+               unsigned{std::signbit(ray.direction.z)} << 2;
+    };
+    const unsigned first = octant(rays[0]);
+    return octant(rays[count - 1]) == first && octant(rays[count / 2]) == first &&
+           octant(rays[count / 3]) == first && octant(rays[1]) == first;
+}
+
 template <bool kAnyHit>
 std::uint32_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
+    if (mesh.nodes == nullptr) return 0;
+    if (!may_run_alike(rays, count)) {
+        trace_apart<kAnyHit>(mesh, rays, count, hits);
+        return found(hits, count);
+    }
     RayRun run;
     const Following how = prepare_run(run, mesh, rays, count);
     if (how == Following::none) return 0;
+    if (how == Following::apart) {
+        trace_apart<kAnyHit>(mesh, rays, count, hits);
+        return found(hits, count);
+    }
     for (unsigned i = 0; i < count; ++i)
         hits[i] = {std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
-    if (how == Following::together)
-        PacketWalk<kAnyHit>(mesh, run, hits).walk();
-    else
-        follow_apart<kAnyHit>(mesh, run, hits);
-    std::uint32_t found = 0;
-    for (unsigned i = 0; i < count; ++i) {
-        if (hits[i].primitive == TriangleBlock::kNone) continue;
-        found |= 1u << i;
+    PacketWalk<kAnyHit>(mesh, run, hits).walk();
+    for (unsigned i = 0; i < count; ++i)
         hits[i].t *= run.ray_units[i];
-    }
-    return found;
+    return found(hits, count);
 }
 
 template <bool kAnyHit>
@@ -85,13 +132,20 @@ std::uint64_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshH
 
 bool closest_hit(const MeshView& mesh, const Ray& ray, MeshHit& hit)
 {
-    return trace_run<false>(mesh, &ray, 1, &hit) != 0;
+    MeshHit found;
+    if (mesh.nodes == nullptr) return false;
+    trace_apart<false>(mesh, &ray, 1, &found);
+    if (found.primitive == TriangleBlock::kNone) return false;
+    hit = found;
+    return true;
 }
 
 bool any_hit(const MeshView& mesh, const Ray& ray)
 {
     MeshHit hit;
-    return trace_run<true>(mesh, &ray, 1, &hit) != 0;
+    if (mesh.nodes == nullptr) return false;
+    trace_apart<true>(mesh, &ray, 1, &hit);
+    return hit.primitive != TriangleBlock::kNone;
 }
 
 std::uint64_t closest_hits(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
@@ -109,7 +163,14 @@ std::uint64_t any_hits(const MeshView& mesh, const Ray* rays, unsigned count)
 
 MeshKernels kernels()
 {
-    return {hwy::TargetName(HWY_TARGET), closest_hit, any_hit, closest_hits, any_hits, enter_box};
+    return {hwy::TargetName(HWY_TARGET),
+            closest_hit,
+            any_hit,
+            closest_hits,
+            any_hits,
+            trace_many<false>,
+            trace_many<true>,
+            enter_box};
 }
 
 } // namespace renderer::HWY_NAMESPACE

@@ -12,6 +12,7 @@
 #include "renderer/accel/wide_bvh.h"
 #include "renderer/geometry/ray.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -38,6 +39,10 @@ struct MeshKernels {
     // Rays that run alike, or through one point, are followed together.
     std::uint64_t (*closest_hits)(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits);
     std::uint64_t (*any_hits)(const MeshView& mesh, const Ray* rays, unsigned count);
+
+    // Any number of rays that have nothing in common, best by the dozen; see MeshBvh.
+    void (*closest_hits_apart)(const MeshView& mesh, const Ray* rays, std::size_t count, MeshHit* hits);
+    void (*any_hits_apart)(const MeshView& mesh, const Ray* rays, std::size_t count, MeshHit* hits);
 
     // Rays of the run that are inside a box within [begin, end], and where the first of them enters.
     std::uint64_t (*enter_box)(const BoxRays& rays, const Vec3d& lower, const Vec3d& upper, double& nearest);

@@ -181,21 +181,19 @@ private:
     M negative_[3], main_is_x_, main_is_y_;
 };
 
-// The axes of rays [first, end), as WatertightRay and the boxes name them.
-HWY_INLINE void name_axes(RayRun& run, unsigned first, unsigned end, const RunKind& kind)
+// The axes of ray i, as WatertightRay and the boxes name them.
+HWY_INLINE void name_axes(RayRun& run, unsigned i, const RunKind& kind)
 {
-    for (unsigned i = first; i < end; ++i) {
-        const auto bit = [i](std::uint32_t bits) { return bits >> i & 1; };
-        const std::uint32_t kz = bit(kind.x_over_y) != 0 ? (bit(kind.x_over_z) != 0 ? 0u : 2u)
-                                                         : (bit(kind.y_over_z) != 0 ? 1u : 2u);
-        std::uint32_t kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
-        if (bit(kind.negative[kz]) != 0) std::swap(kx, ky);
-        run.kx[i] = static_cast<std::uint8_t>(kx);
-        run.ky[i] = static_cast<std::uint8_t>(ky);
-        run.kz[i] = static_cast<std::uint8_t>(kz);
-        for (std::uint32_t axis = 0; axis < 3; ++axis)
-            run.near_row[axis][i] = static_cast<std::uint8_t>(2 * axis + bit(kind.negative[axis]));
-    }
+    const auto bit = [i](std::uint32_t bits) { return bits >> i & 1; };
+    const std::uint32_t kz =
+        bit(kind.x_over_y) != 0 ? (bit(kind.x_over_z) != 0 ? 0u : 2u) : (bit(kind.y_over_z) != 0 ? 1u : 2u);
+    std::uint32_t kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
+    if (bit(kind.negative[kz]) != 0) std::swap(kx, ky);
+    run.kx[i] = static_cast<std::uint8_t>(kx);
+    run.ky[i] = static_cast<std::uint8_t>(ky);
+    run.kz[i] = static_cast<std::uint8_t>(kz);
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        run.near_row[axis][i] = static_cast<std::uint8_t>(2 * axis + bit(kind.negative[axis]));
 }
 
 // The same axes for all rays.
@@ -309,7 +307,7 @@ HWY_INLINE void narrow_rays(RayRun& run, unsigned i, const Bounds3f& box)
     }
 }
 
-// How rays are to be followed.
+// How rays are to be followed; only those that go together are made ready here.
 enum class Following { none, together, apart };
 
 HWY_INLINE Following prepare_run(RayRun& run, const MeshView& mesh, const Ray* rays, unsigned count)
@@ -321,19 +319,16 @@ HWY_INLINE Following prepare_run(RayRun& run, const MeshView& mesh, const Ray* r
         ExactLanes(run, i).prepare(mesh, kind);
     if (run.rays == 0) return Following::none;
     const bool together = used == RayRun::kRays && std::popcount(run.rays) >= 4 && kind.alike(run.rays);
-    if (together) {
-        const auto any = static_cast<unsigned>(__builtin_ctz(run.rays));
-        name_axes(run, any, any + 1, kind);
-        share_axes(run, any);
-        start_together(run, used);
-    } else {
-        name_axes(run, 0, used, kind);
-    }
+    if (!together) return Following::apart;
+    const auto any = static_cast<unsigned>(__builtin_ctz(run.rays));
+    name_axes(run, any, kind);
+    share_axes(run, any);
+    start_together(run, used);
     for (unsigned i = 0; i < used; i += kFloats)
         narrow_rays(run, i, mesh.bounds);
     for (unsigned lanes = ~run.rays & ((1u << used) - 1); lanes != 0; lanes &= lanes - 1)
         run.end[__builtin_ctz(lanes)] = -std::numeric_limits<float>::infinity();
-    return together ? Following::together : Following::apart;
+    return Following::together;
 }
 
 } // namespace

@@ -54,15 +54,48 @@ public:
     }
     std::uint64_t trace(const RaySet& set, std::span<const FloatRay> rays, FoundHit* found) const override
     {
+        return set.coherent ? trace_in_runs(set, rays, found) : trace_apart(set, rays, found);
+    }
+
+private:
+    static Ray widen(const FloatRay& r)
+    {
+        return {to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
+    }
+
+    std::uint64_t trace_apart(const RaySet& set, std::span<const FloatRay> rays, FoundHit* found) const
+    {
+        constexpr std::size_t kAtOnce = 64;
+        std::uint64_t hits = 0;
+        Ray run[kAtOnce];
+        MeshHit met[kAtOnce];
+        for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
+            const std::size_t count = std::min(kAtOnce, rays.size() - first);
+            for (std::size_t i = 0; i < count; ++i)
+                run[i] = widen(rays[first + i]);
+            if (set.occlusion)
+                bvh_->any_hits_apart({run, count}, met, kernels_);
+            else
+                bvh_->closest_hits_apart({run, count}, met, kernels_);
+            for (std::size_t i = 0; i < count; ++i) {
+                if (met[i].primitive == TriangleBlock::kNone) continue;
+                ++hits;
+                if (found == nullptr) continue;
+                found[first + i] = set.occlusion ? FoundHit{0, 0} : FoundHit{met[i].primitive, met[i].t};
+            }
+        }
+        return hits;
+    }
+
+    std::uint64_t trace_in_runs(const RaySet& set, std::span<const FloatRay> rays, FoundHit* found) const
+    {
         std::uint64_t hits = 0;
         Ray run[MeshKernels::kMostRays];
         MeshHit met[MeshKernels::kMostRays];
         for (std::size_t first = 0; first < rays.size(); first += MeshKernels::kMostRays) {
             const std::size_t count = std::min<std::size_t>(MeshKernels::kMostRays, rays.size() - first);
-            for (std::size_t i = 0; i < count; ++i) {
-                const FloatRay& r = rays[first + i];
-                run[i] = {to_double(r.origin), to_double(r.direction), r.t_min, r.t_max};
-            }
+            for (std::size_t i = 0; i < count; ++i)
+                run[i] = widen(rays[first + i]);
             const std::span<const Ray> some(run, count);
             const std::uint64_t hit =
                 set.occlusion ? bvh_->any_hits(some, kernels_) : bvh_->closest_hits(some, met, kernels_);
@@ -76,7 +109,6 @@ public:
         return hits;
     }
 
-private:
     TriangleRun all_triangles() const { return {0, static_cast<std::uint32_t>(mesh_.triangles.size())}; }
 
     const Mesh& mesh_;

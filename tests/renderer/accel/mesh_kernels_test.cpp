@@ -23,6 +23,7 @@ protected:
         MeshHit hits[kRun];
         const std::uint64_t found = bvh.closest_hits(rays, hits, GetParam());
         const std::uint64_t met = bvh.any_hits(rays, GetParam());
+        expect_apart_as_brute_force(bvh, rays);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const auto expected = bvh.closest_hit_brute_force(rays[i]);
             const bool hit = (found >> i & 1) != 0;
@@ -36,6 +37,23 @@ protected:
         }
         ASSERT_EQ((found | met) >> (rays.size() - 1) >> 1, std::uint64_t{0})
             << "rays that are not there have hit";
+    }
+
+    void expect_apart_as_brute_force(const MeshBvh& bvh, std::span<const Ray> rays)
+    {
+        std::vector<MeshHit> hits(rays.size()), met(rays.size());
+        bvh.closest_hits_apart(rays, hits, GetParam());
+        bvh.any_hits_apart(rays, met, GetParam());
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const auto expected = bvh.closest_hit_brute_force(rays[i]);
+            const bool hit = hits[i].primitive != TriangleBlock::kNone;
+            ASSERT_TRUE(same(hit ? std::optional(hits[i]) : std::nullopt, expected))
+                << "ray " << i << " apart";
+            ASSERT_EQ(met[i].primitive != TriangleBlock::kNone, expected.has_value())
+                << "ray " << i << " apart";
+            hits_ += hit;
+            ++rays_;
+        }
     }
 
     int hits_ = 0, rays_ = 0;
@@ -191,6 +209,44 @@ TEST_P(EveryMeshKernel, FollowsRaysAmongCornersThatAreMoreThanFloats)
         }
     }
     EXPECT_GT(hits_, rays_ / 5);
+}
+
+TEST_P(EveryMeshKernel, FollowsAnyNumberOfRaysApart)
+{
+    Random random(36);
+    for (const Mesh& mesh : ten_meshes()) {
+        const MeshBvh bvh = build(mesh);
+        for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 700u}) {
+            std::vector<Ray> rays(count);
+            for (Ray& ray : rays)
+                ray = random_ray(random, mesh);
+            expect_apart_as_brute_force(bvh, rays);
+        }
+    }
+    EXPECT_GT(hits_, rays_ / 5);
+}
+
+// As bounces and shadow rays do: from just above the surface, and from on it.
+TEST_P(EveryMeshKernel, FollowsRaysThatStartAtTheSurface)
+{
+    Random random(37);
+    for (const Mesh& mesh : ten_meshes()) {
+        const MeshBvh bvh = build(mesh);
+        std::vector<Ray> rays(2000 / kThinning);
+        for (Ray& ray : rays) {
+            const Triangle& v =
+                mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+            const Vec3d a = to_double(mesh.positions[v[0]]), b = to_double(mesh.positions[v[1]]),
+                        c = to_double(mesh.positions[v[2]]);
+            const double w = random.uniform(), above = std::pow(10, random.uniform(-9, -1));
+            const Vec3d at = (a * w + b * (1 - w)) * 0.5 + c * 0.5;
+            ray.origin = random.below(4) == 0 ? at : at + cross(b - a, c - a) * above;
+            ray.direction = random.direction();
+            if (random.below(4) == 0) ray.t_max = length(b - a) * random.uniform();
+        }
+        expect_apart_as_brute_force(bvh, rays);
+    }
+    EXPECT_GT(hits_, rays_ / 20);
 }
 
 TEST_P(EveryMeshKernel, PassesOverRaysThatAreNoRays)
