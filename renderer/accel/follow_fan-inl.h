@@ -94,6 +94,9 @@ public:
     {
     }
 
+    // Too many leaves met the fan: of rays that have not hit nothing is known.
+    HWY_INLINE bool gave_up() const { return leaves_ > fan_.most_leaves; }
+
     // Bit i: ray i hit.
     HWY_INLINE std::uint64_t walk()
     {
@@ -109,6 +112,7 @@ public:
         end_ = farthest_end();
         for (;;) {
             if ((next.code & ChildCode::kLeaf) != 0) {
+                if (kAnyHit && ++leaves_ > fan_.most_leaves) return found_.settle();
                 visit_leaf(next.code);
             } else {
                 const WideNode& node = mesh_.nodes[next.code];
@@ -263,6 +267,7 @@ private:
     RayFan& fan_;
     FanFindings<kAnyHit> found_;
     float end_ = 0;
+    unsigned leaves_ = 0;
 };
 
 } // namespace

@@ -109,7 +109,24 @@ bool trace_fan(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* h
 {
     RayFan fan;
     if (!prepare_fan(fan, mesh, rays, count, kAnyHit)) return false;
-    found = FanWalk<kAnyHit>(mesh, fan, rays, hits).walk();
+    FanWalk<kAnyHit> fan_walk(mesh, fan, rays, hits);
+    found = fan_walk.walk();
+    if (!kAnyHit || !fan_walk.gave_up()) return true;
+    Ray left[RayRun::kRays];
+    unsigned from[RayRun::kRays];
+    unsigned waiting = 0;
+    const auto trace_left = [&]() HWY_ATTR {
+        for (std::uint32_t met = trace_run<kAnyHit>(mesh, left, waiting, hits); met != 0; met &= met - 1)
+            found |= std::uint64_t{1} << from[__builtin_ctz(met)];
+        waiting = 0;
+    };
+    for (unsigned i = 0; i < count; ++i) {
+        if ((found >> i & 1) != 0) continue;
+        left[waiting] = rays[i];
+        from[waiting++] = i;
+        if (waiting == RayRun::kRays) trace_left();
+    }
+    if (waiting != 0) trace_left();
     return true;
 }
 

@@ -24,6 +24,10 @@ inline constexpr unsigned kGroupLanes = hn::MaxLanes(Group());
 // The largest slope of a fan; that of a ray along its own main axis is at most 1.
 inline constexpr float kSteepest = 1.25f;
 
+// Where the triangles that shadow rays start on are much smaller than what lies between two of the rays, they have few
+// leaves in common: when 64 rays have met this many, those that have not hit are followed in another way.
+inline constexpr unsigned kLeavesOfFan = 24;
+
 class FanMaker {
 public:
     HWY_INLINE FanMaker(RayFan& fan, const MeshView& mesh, const Ray* rays, unsigned count)
@@ -69,6 +73,7 @@ private:
         fan_.turned = (along[fan_.z] < 0) == outward;
         fan_.apex = {apex_[fan_.x], apex_[fan_.y], apex_[fan_.z]};
         fan_.count = count_;
+        fan_.most_leaves = count_ * kLeavesOfFan / RayFan::kRays;
         fan_.size = std::max(max_abs(mesh_.bounds.lower), max_abs(mesh_.bounds.upper));
     }
 

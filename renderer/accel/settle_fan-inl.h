@@ -100,9 +100,6 @@ private:
     using F = hn::Rebind<float, D>;
     static constexpr unsigned kTogether = hn::MaxLanes(D());
     static constexpr unsigned kMostAsked = 128;
-    struct Corner {
-        V x, y, z;
-    };
 
     HWY_INLINE bool decide(unsigned ray, std::uint32_t triangle, MeshHit& best) const
     {
@@ -177,30 +174,31 @@ private:
         const V sx = hn::Div(hn::Mul(hn::Load(d, directions[0]), power), main);
         const V sy = hn::Div(hn::Mul(hn::Load(d, directions[1]), power), main);
         const V sz = hn::Div(hn::Set(d, 1.0), main);
-        Corner p[3];
+        V x[3], y[3], z[3];
         for (std::size_t k = 0; k < 3; ++k) {
             const auto at = [&](std::size_t axis) HWY_ATTR {
                 return hn::Sub(hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis])),
                                hn::Load(d, origins[axis]));
             };
             const V depth = at(2);
-            p[k] = {
-                hn::Sub(at(0), hn::Mul(sx, depth)), hn::Sub(at(1), hn::Mul(sy, depth)), hn::Mul(sz, depth)};
+            x[k] = hn::Sub(at(0), hn::Mul(sx, depth));
+            y[k] = hn::Sub(at(1), hn::Mul(sy, depth));
+            z[k] = hn::Mul(sz, depth);
         }
-        const auto edge = [](const Corner& a, const Corner& b)
-                              HWY_ATTR { return hn::Sub(hn::Mul(b.x, a.y), hn::Mul(b.y, a.x)); };
-        const V e[3] = {edge(p[1], p[2]), edge(p[2], p[0]), edge(p[0], p[1])};
+        const auto edge = [&](std::size_t a, std::size_t b)
+                              HWY_ATTR { return hn::Sub(hn::Mul(x[b], y[a]), hn::Mul(y[b], x[a])); };
+        const V e[3] = {edge(1, 2), edge(2, 0), edge(0, 1)};
         const V det = hn::Add(hn::Add(e[0], e[1]), e[2]);
         const V inverse_det = hn::Div(hn::Set(d, 1.0), det);
         const V w[3] = {hn::Mul(e[0], inverse_det), hn::Mul(e[1], inverse_det), hn::Mul(e[2], inverse_det)};
         const auto mean = [&](V a, V b, V c) HWY_ATTR {
             return hn::Add(hn::Add(hn::Mul(w[0], a), hn::Mul(w[1], b)), hn::Mul(w[2], c));
         };
-        const V t = mean(p[0].z, p[1].z, p[2].z);
-        const V off = hn::Max(hn::Abs(mean(p[0].x, p[1].x, p[2].x)), hn::Abs(mean(p[0].y, p[1].y, p[2].y)));
+        const V t = mean(z[0], z[1], z[2]);
+        const V off = hn::Max(hn::Abs(mean(x[0], x[1], x[2])), hn::Abs(mean(y[0], y[1], y[2])));
         const auto max3 = [](V a, V b, V c)
                               HWY_ATTR { return hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c)); };
-        const V widest = hn::Max(max3(p[0].x, p[1].x, p[2].x), max3(p[0].y, p[1].y, p[2].y));
+        const V widest = hn::Max(max3(x[0], x[1], x[2]), max3(y[0], y[1], y[2]));
         // Where the weights need not be drawn onto the ray, the axes are the fan's, and the rest is as float said.
         auto plain = hn::Le(off, hn::Mul(hn::Set(d, gamma<double>(16)), widest));
         plain = hn::And(plain,
