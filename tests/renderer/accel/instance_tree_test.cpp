@@ -206,7 +206,9 @@ TEST(InstanceTree, IsTheSameOnAnyNumberOfThreads)
         const Ray ray{random.direction() * 5.0, random.direction()};
         const auto a = one.closest_hit(ray), b = other.closest_hit(ray);
         ASSERT_EQ(a.has_value(), b.has_value());
-        if (a) ASSERT_EQ(a->instance, b->instance);
+        if (a) {
+            ASSERT_EQ(a->instance, b->instance);
+        }
     }
 }
 
