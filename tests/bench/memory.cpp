@@ -91,7 +91,7 @@ std::vector<Instance> instances_of(const PreparedMesh& mesh, std::uint32_t count
         const Vec3d at{3.0 * (i % side), 3.0 * (i / side % side), 3.0 * (i / side / side)};
         const Affine3 turned = Affine3::rotate_deg(static_cast<double>(i * 37 % 360), {1, 2, 3});
         instances.push_back(
-            Instance::place(MeshGeometry{&mesh_of(mesh), &bvh_of(mesh)}, Affine3::translate(at) * turned)
+            Instance::place(MeshGeometry{&mesh_of(mesh), bvh_of(mesh)}, Affine3::translate(at) * turned)
                 .value());
     }
     return instances;
@@ -126,7 +126,7 @@ void run(const Options& options)
     ThreadPool pool(options.threads);
     Mesh made = terrain_mesh(options.triangles);
     const Growth of_mesh;
-    const auto mesh = prepare_mesh(std::move(made), BvhSplit::sah, pool);
+    const auto mesh = prepare_mesh(std::move(made), MeshTree::wide_sah, pool);
     if (options.instances == 0) return measure_mesh(mesh, of_mesh);
     const Growth growth;
     std::vector<Instance> instances = instances_of(*mesh, options.instances);
