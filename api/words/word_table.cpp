@@ -1,6 +1,10 @@
 #include "api/words/word_table.h"
 
+#include "renderer/description/mesh_formats.h"
+
+#include <array>
 #include <cassert>
+#include <cstddef>
 
 namespace api {
 
@@ -139,8 +143,12 @@ WordTable fail_on_words()
 
 WordTable mesh_format_words()
 {
-    static constexpr std::array words{
-        Word{"obj", 0}, Word{"ply", 1}, Word{"stl", 2}, Word{"gltf", 3}, Word{"glb", 4}};
+    static constexpr auto words = [] {
+        std::array<Word, renderer::kMeshFormats.size()> all{};
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i] = Word{renderer::kMeshFormats[i].name, static_cast<int>(i)};
+        return all;
+    }();
     return words;
 }
 

@@ -6,6 +6,7 @@
 #include "clients/cli/local_commands.h"
 #include "clients/cli/remote_commands.h"
 #include "clients/cli/user_error.h"
+#include "renderer/description/mesh_formats.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -36,8 +37,10 @@ struct CommandLine {
     Action action;
 };
 
-const char* const kSceneHelp =
-    "scene (JSON), a mesh alone (.obj .ply .stl .gltf .glb), or - for standard input";
+std::string scene_help()
+{
+    return "scene (JSON), a mesh alone (" + renderer::mesh_extensions() + "), or - for standard input";
+}
 
 std::string version_text()
 {
@@ -87,7 +90,7 @@ void add_render(CommandLine& words)
         add_command(words, "render", "render here, without a service", [&words](const auto& stop) {
             return render_command(words.render, stop);
         });
-    command->add_option("scene", options.scene, kSceneHelp)->required();
+    command->add_option("scene", options.scene, scene_help())->required();
     command
         ->add_option("-o,--output",
                      options.output,
@@ -134,7 +137,7 @@ void add_check(CommandLine& words)
         add_command(words, "check", "tell every fault of a scene and its meshes", [&words](const auto&) {
             return check_command(words.check);
         });
-    command->add_option("scene", words.check.scene, kSceneHelp)->required();
+    command->add_option("scene", words.check.scene, scene_help())->required();
     command->add_flag(
         "--expand", words.check.expand, "print the job with every default and assumption written out");
 }
@@ -152,7 +155,7 @@ void add_compare(CommandLine& words)
 
 void add_scene_options(CLI::App& command, SubmitOptions& options)
 {
-    command.add_option("scene", options.scene, kSceneHelp)->required();
+    command.add_option("scene", options.scene, scene_help())->required();
     command.add_option(
         "--priority", options.priority, "0 to 100, larger first (default: as the scene says, else 50)");
     command.add_option("--label", options.labels, "NAME=VALUE, may be repeated")->take_all();

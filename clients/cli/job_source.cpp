@@ -2,20 +2,16 @@
 
 #include "clients/cli/files.h"
 #include "clients/cli/user_error.h"
+#include "renderer/description/mesh_formats.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
-#include <string_view>
 
 namespace clients {
 namespace {
 
 bool names_mesh(const std::filesystem::path& path)
 {
-    static constexpr std::array<std::string_view, 5> kMeshExtensions{".obj", ".ply", ".stl", ".gltf", ".glb"};
-    return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), lower_extension(path)) !=
-           kMeshExtensions.end();
+    return renderer::is_mesh_extension(lower_extension(path));
 }
 
 std::string scene_of_mesh(const std::string& mesh)

@@ -21,8 +21,8 @@ struct JobSource {
     std::filesystem::path folder;
 };
 
-// "-" is standard input, with files named from the working folder. A mesh (.obj .ply .stl .gltf .glb) stands
-// for the scene of that mesh alone.
+// "-" is standard input, with files named from the working folder. A mesh, of any format of mesh_formats.h,
+// stands for the scene of that mesh alone.
 JobSource read_job_source(const std::string& scene);
 
 // Every fault on stderr, one a line: source, pointer, what is wrong and the remedy. Then throws

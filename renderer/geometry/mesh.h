@@ -7,6 +7,7 @@
 #pragma once
 
 #include "renderer/color/rgb.h"
+#include "renderer/geometry/array.h"
 #include "renderer/math/bounds.h"
 
 #include <array>
@@ -43,15 +44,14 @@ using Triangle = std::array<std::uint32_t, 3>; // vertex indices, counter-clockw
 
 struct Mesh {
     Vec3d origin{};
-    std::vector<Vec3f> positions;
-    std::vector<Vec3f>
-        residuals; // one a vertex, to be added to its position: what a float cannot hold; or none
-    std::vector<Vec3f> normals; // one a vertex, unit; or none
-    std::vector<Vec2f> uvs;     // one a vertex; or none
-    std::vector<Triangle> triangles;
-    std::vector<std::uint16_t> triangle_materials; // one a triangle; or none: all material 0
-    std::vector<MeshMaterial> materials;           // may be empty
-    std::vector<MeshPart> parts;                   // may be empty
+    Array<Vec3f> positions;
+    Array<Vec3f> residuals; // one a vertex, to be added to its position: what a float cannot hold; or none
+    Array<Vec3f> normals;   // one a vertex, unit; or none
+    Array<Vec2f> uvs;       // one a vertex; or none
+    Array<Triangle> triangles;
+    Array<std::uint16_t> triangle_materials; // one a triangle; or none: all material 0
+    std::vector<MeshMaterial> materials;     // may be empty
+    std::vector<MeshPart> parts;             // may be empty
 
     // As exactly as it is known: 48 bits where there are residuals.
     Vec3d position(std::uint32_t vertex) const

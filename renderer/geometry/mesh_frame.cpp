@@ -59,7 +59,7 @@ bool is_spoiled(const Mesh& mesh, const Triangle& triangle)
 
 } // namespace
 
-void set_positions(Mesh& mesh, const std::vector<Vec3d>& in_file)
+void set_positions(Mesh& mesh, std::span<const Vec3d> in_file)
 {
     mesh.origin = origin_for(bounds_of(mesh, [&](std::uint32_t vertex) { return in_file[vertex]; }));
     mesh.positions.resize(in_file.size());

@@ -9,13 +9,13 @@
 
 #include "renderer/geometry/mesh.h"
 
-#include <vector>
+#include <span>
 
 namespace renderer {
 
 // For a mesh whose triangles are complete: takes the positions in the file's coordinates, as exactly as it says
 // them, and fills origin, positions and residuals. All are finite and within float's range.
-void set_positions(Mesh& mesh, const std::vector<Vec3d>& in_file);
+void set_positions(Mesh& mesh, std::span<const Vec3d> in_file);
 
 // The same for a mesh whose positions are the file's own floats: there is nothing to be rounded off.
 void choose_origin(Mesh& mesh);

@@ -2,6 +2,7 @@
 
 #include "renderer/geometry/mesh_frame.h"
 #include "renderer/io/import_bounds.h"
+#include "renderer/io/scene_frame.h"
 #include "renderer/io/text.h"
 #include "renderer/io/triangulate.h"
 #include "renderer/math/affine.h"
@@ -44,8 +45,9 @@ bool is_transparent(const aiMaterial& from)
 {
     if (factor_of(from, 0, AI_MATKEY_TRANSMISSION_FACTOR) > 0) return true;
     aiString mode;
-    if (from.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != AI_SUCCESS || std::string_view(mode.C_Str()) == "OPAQUE")
-        return false;
+    if (from.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != AI_SUCCESS)
+        return factor_of(from, 1, AI_MATKEY_OPACITY) < 1; // of other formats
+    if (std::string_view(mode.C_Str()) == "OPAQUE") return false;
     return factor_of(from, 1, AI_MATKEY_OPACITY) < 1 || from.GetTextureCount(aiTextureType_BASE_COLOR) > 0 ||
            from.GetTextureCount(aiTextureType_DIFFUSE) > 0;
 }
@@ -80,6 +82,8 @@ public:
 private:
     std::optional<ImportFault> make_piece(unsigned number);
     void make_flat(Piece& piece) const;
+    bool is_gltf() const { return result_.format == "gltf" || result_.format == "glb"; }
+    bool is_assimps_own(unsigned material) const;
     void materials();
     void count(const aiNode& node);
     void place(const aiNode& node, const Affine3& world_from_parent);
@@ -89,7 +93,7 @@ private:
     const Limits& limits_;
     ImportedMesh& result_;
     std::vector<Piece> pieces_;
-    std::vector<Vec3d> in_file_; // positions, placed
+    Array<Vec3d> in_file_; // positions, placed
     bool with_normals_ = false, with_uvs_ = false, with_materials_ = false;
     std::uint64_t triangles_ = 0, lines_and_points_ = 0;
 };
@@ -100,18 +104,21 @@ std::optional<ImportFault> Flattener::make_piece(unsigned number)
     Piece& piece = pieces_[number];
     constexpr std::uint32_t kUnused = 0xffffffff;
     std::vector<std::uint32_t> made(mesh.mNumVertices, kUnused);
+    std::vector<std::uint32_t> corners;
+    std::vector<Vec3d> outline;
+    std::vector<Triangle> pieces;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
         const aiFace& face = mesh.mFaces[f];
-        if (face.mNumIndices != 3) {
+        if (face.mNumIndices < 3) {
             ++piece.lines_and_points;
             continue;
         }
-        Triangle triangle{};
-        for (unsigned i = 0; i < 3; ++i) {
+        corners.clear();
+        for (unsigned i = 0; i < face.mNumIndices; ++i) {
             const unsigned from = face.mIndices[i];
             if (from >= mesh.mNumVertices)
                 return ImportFault{"index_out_of_range",
-                                   "mesh " + quoted(mesh.mName.C_Str()) + ", triangle " + std::to_string(f) +
+                                   "mesh " + quoted(mesh.mName.C_Str()) + ", face " + std::to_string(f) +
                                        ": vertex " + std::to_string(from) + "; it has " +
                                        std::to_string(mesh.mNumVertices)};
             if (made[from] == kUnused) {
@@ -124,9 +131,24 @@ std::optional<ImportFault> Flattener::make_piece(unsigned number)
                     piece.uvs.push_back({uv.x, uv.y});
                 }
             }
-            triangle[i] = made[from];
+            corners.push_back(made[from]);
         }
-        piece.triangles.push_back(triangle);
+        if (corners.size() == 3) {
+            piece.triangles.push_back({corners[0], corners[1], corners[2]});
+            continue;
+        }
+        outline.clear();
+        pieces.clear();
+        for (const std::uint32_t corner : corners)
+            outline.push_back(to_double(piece.positions[corner]));
+        if (!triangulate(outline, pieces))
+            return ImportFault{"over_limit",
+                               "mesh " + quoted(mesh.mName.C_Str()) + ", face " + std::to_string(f) +
+                                   ": a concave polygon of " + std::to_string(corners.size()) +
+                                   " corners, the limit is " + std::to_string(kMostConcaveCorners) +
+                                   ": export triangles"};
+        for (const Triangle& t : pieces)
+            piece.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
     }
     if (with_normals_ && !mesh.mNormals) make_flat(piece);
     return std::nullopt;
@@ -150,22 +172,32 @@ void Flattener::make_flat(Piece& piece) const
     piece = std::move(flat);
 }
 
+// For glTF it appends one; for other formats it gives one to meshes that have none, under names of its own.
+bool Flattener::is_assimps_own(unsigned material) const
+{
+    if (is_gltf()) return material + 1 == scene_.mNumMaterials;
+    const aiString name = const_cast<aiMaterial&>(*scene_.mMaterials[material]).GetName();
+    const std::string_view said = name.C_Str();
+    return said == AI_DEFAULT_MATERIAL_NAME || said == "%%%DEFAULT" || said.empty();
+}
+
 void Flattener::materials()
 {
-    // assimp appends a default of its own; where the file has no other, the mesh has none.
-    with_materials_ = scene_.mNumMaterials > 1;
+    // Where the file has none but assimp's own, the mesh has none.
+    for (unsigned i = 0; i < scene_.mNumMaterials; ++i)
+        with_materials_ = with_materials_ || !is_assimps_own(i);
     for (unsigned i = 0; with_materials_ && i < scene_.mNumMaterials; ++i) {
         const aiMaterial& from = *scene_.mMaterials[i];
         MeshMaterial& to = result_.mesh.materials.emplace_back();
         to.name = clean_utf8(const_cast<aiMaterial&>(from).GetName().C_Str());
+        if (is_assimps_own(i) && !is_gltf()) continue; // grey, as any without a colour
         aiColor4D color;
         if (from.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS ||
             from.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS)
             to.diffuse = {std::clamp(color.r, 0.0f, 1.0f),
                           std::clamp(color.g, 0.0f, 1.0f),
                           std::clamp(color.b, 0.0f, 1.0f)};
-        if (i + 1 < scene_.mNumMaterials)
-            take_left_out(from, to); // not of assimp's own, which would be metal
+        if (!is_assimps_own(i)) take_left_out(from, to); // of its own it would be metal
         for (int type = aiTextureType_NONE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
             aiString name;
             if (from.GetTexture(static_cast<aiTextureType>(type), 0, &name) != AI_SUCCESS) continue;
@@ -205,14 +237,13 @@ void Flattener::place(const Piece& piece, const Affine3& world_from_object, unsi
         const Vec3d turned{dot(cofactors[0], n), dot(cofactors[1], n), dot(cofactors[2], n)};
         mesh.normals.push_back(max_component(abs(turned)) > 0 ? to_float(normalize(turned)) : Vec3f{0, 0, 1});
     }
-    mesh.uvs.insert(mesh.uvs.end(), piece.uvs.begin(), piece.uvs.end());
+    mesh.uvs.append(piece.uvs);
     for (Triangle t : piece.triangles) {
         if (side < 0) std::swap(t[1], t[2]);
         mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
     if (with_materials_)
-        mesh.triangle_materials.insert(
-            mesh.triangle_materials.end(), piece.triangles.size(), static_cast<std::uint16_t>(material));
+        mesh.triangle_materials.append(piece.triangles.size(), static_cast<std::uint16_t>(material));
 }
 
 void Flattener::place(const aiNode& node, const Affine3& world_from_parent)
@@ -244,7 +275,7 @@ std::optional<ImportFault> Flattener::run()
     count(*scene_.mRootNode);
     if (triangles_ > limits_.triangles) return over_triangle_limit(triangles_, limits_, false);
     materials();
-    place(*scene_.mRootNode, {});
+    place(*scene_.mRootNode, world_from_file(scene_));
     set_positions(result_.mesh, in_file_);
     std::erase_if(result_.mesh.parts,
                   [](const MeshPart& p) { return p.name.empty() || p.triangle_count == 0; });

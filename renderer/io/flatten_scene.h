@@ -9,7 +9,7 @@ struct aiScene;
 
 namespace renderer {
 
-// `result.mesh` and notes are filled; nodes must form a tree.
+// `result.mesh` and notes are filled, by result.format; nodes must form a tree.
 std::optional<ImportFault> flatten_scene(const aiScene& scene, const Limits& limits, ImportedMesh& result);
 
 } // namespace renderer

@@ -196,7 +196,7 @@ Check BufferCheck::primitive(const GltfPrimitive& p)
             "mesh", p.mesh, "has " + std::to_string(corners) + " corners of triangles, not three each");
     triangles_ += p.mode < 4 ? 0 : p.mode == 4 ? corners / 3 : corners - std::min<std::uint64_t>(corners, 2);
     if (triangles_ > limits_.triangles) return over_triangle_limit(triangles_, limits_, true);
-    return std::nullopt;
+    return over_output_limit(0, triangles_, limits_);
 }
 
 } // namespace

@@ -1,8 +1,13 @@
 #include "renderer/io/import_mesh.h"
 
+#include "renderer/description/mesh_formats.h"
 #include "renderer/geometry/validate_mesh.h"
+#include "renderer/io/read_3ds.h"
+#include "renderer/io/read_collada.h"
+#include "renderer/io/read_fbx.h"
 #include "renderer/io/read_gltf.h"
 #include "renderer/io/read_obj.h"
+#include "renderer/io/read_off.h"
 #include "renderer/io/read_ply.h"
 #include "renderer/io/read_stl.h"
 #include "renderer/io/text.h"
@@ -15,7 +20,19 @@ namespace renderer {
 
 namespace {
 
-enum class Format : std::uint8_t { unknown, obj, ply, stl_binary, stl_ascii, gltf, glb };
+enum class Format : std::uint8_t {
+    unknown,
+    obj,
+    ply,
+    stl_binary,
+    stl_ascii,
+    gltf,
+    glb,
+    fbx,
+    dae,
+    three_ds,
+    off
+};
 
 // Every one of the first statements must be one that OBJ knows.
 bool looks_like_obj(std::string_view text)
@@ -38,11 +55,16 @@ bool looks_like_obj(std::string_view text)
 Format format_of_content(std::string_view text)
 {
     if (text.starts_with("glTF")) return Format::glb;
+    if (text.starts_with("Kaydara FBX Binary")) return Format::fbx;
+    if (is_3ds(text)) return Format::three_ds;
     if (text.starts_with("ply\n") || text.starts_with("ply\r")) return Format::ply;
     if (binary_stl_facets(text))
         return Format::stl_binary; // before "solid", with which binary ones may begin
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == text.npos) return Format::unknown;
+    if (text[first] == ';' && text.substr(first, 4096).find("FBX") != text.npos) return Format::fbx;
+    if (text[first] == '<' && text.substr(first, 4096).find("<COLLADA") != text.npos) return Format::dae;
+    if (is_off(text.substr(first))) return Format::off;
     if (text[first] == '{' && text.find("\"asset\"") != text.npos) return Format::gltf;
     std::string_view start = text.substr(first, 1024);
     const std::string_view word = take_word(start);
@@ -61,6 +83,10 @@ Format format_of_name(std::string_view name, std::string_view text)
         return lower_case(text.substr(0, 5)) == "solid" ? Format::stl_ascii : Format::stl_binary;
     if (extension == ".gltf") return Format::gltf;
     if (extension == ".glb") return Format::glb;
+    if (extension == ".fbx") return Format::fbx;
+    if (extension == ".dae") return Format::dae;
+    if (extension == ".3ds") return Format::three_ds;
+    if (extension == ".off") return Format::off;
     return Format::unknown;
 }
 
@@ -80,12 +106,20 @@ read(Format format, std::span<const std::byte> bytes, CompanionFiles& files, con
         return read_gltf(bytes, files, limits);
     case Format::glb:
         return read_glb(bytes, files, limits);
+    case Format::fbx:
+        return read_fbx(bytes, files, limits);
+    case Format::dae:
+        return read_collada(bytes, files, limits);
+    case Format::three_ds:
+        return read_3ds(bytes, files, limits);
+    case Format::off:
+        return read_off(text_of(bytes), limits);
     case Format::unknown:
         break;
     }
     return ImportFault{"unknown_format",
                        "the file begins with " + quoted(text_of(bytes).substr(0, 16)) +
-                           ", which is none of what is read: OBJ, PLY, STL, glTF 2.0, GLB"};
+                           ", which is none of what is read: " + mesh_format_titles()};
 }
 
 } // namespace

@@ -1,11 +1,11 @@
-// import_mesh: reads a mesh file (OBJ with MTL, PLY, STL, glTF, GLB) into a Mesh, and trusts no byte of it.
+// import_mesh: reads a mesh file of any format of mesh_formats.h into a Mesh, and trusts no byte of it.
 //
 // Files   the importer asks `open` for every file by the name that the file itself uses (an MTL, a buffer);
 //         nothing else is ever opened, nothing from disk or network. Names that could lead elsewhere
 //         (absolute, "..", a scheme) are never asked for.
 // Errors  faults are values with a plain sentence; never a half-read mesh. A missing MTL is a note. Throws
-//         std::bad_alloc alone. glTF goes through assimp, which hostile files may crash: services import in a
-//         process of its own.
+//         std::bad_alloc alone. glTF, FBX, COLLADA and 3DS go through assimp, which hostile files may crash:
+//         services import in a process of its own.
 // Cost    linear in the file; memory a small multiple of it, bounded by `limits`.
 #pragma once
 
@@ -30,7 +30,7 @@ struct ImportFault {
 
 struct ImportedMesh {
     Mesh mesh;
-    std::string format;                    // "obj", "ply", "stl", "gltf", "glb"
+    std::string format;                    // its name in mesh_formats.h
     std::vector<std::string> opened_files; // every other file that was asked for and found, sorted
     std::vector<std::string> notes;        // "material file x.mtl did not come with the mesh ...", ...
 };

@@ -27,6 +27,10 @@ public:
 
     std::optional<double> next(PlyType type) { return ascii_ ? next_word() : next_binary(type); }
     std::size_t bytes_left() const { return file_.size() - at_; }
+    // Where the next values stand as this machine would have them, for who decodes many of one kind at once;
+    // null where they do not.
+    const char* as_they_stand() const { return ascii_ || swap_ ? nullptr : file_.data() + at_; }
+    void skip_bytes(std::size_t count) { at_ += count; } // no more than are left
     bool ended() const { return ended_; }
     bool only_blanks_left() const { return file_.find_first_not_of(" \t\r\n", at_) == file_.npos; }
     // "line 12" or "byte 4711", of the next value.
@@ -38,8 +42,12 @@ public:
 private:
     std::optional<double> next_word()
     {
-        at_ = std::min(file_.find_first_not_of(" \t\r\n", at_), file_.size());
-        const std::size_t end = std::min(file_.find_first_of(" \t\r\n", at_), file_.size());
+        const auto is_gap = [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
+        while (at_ < file_.size() && is_gap(file_[at_]))
+            ++at_;
+        std::size_t end = at_;
+        while (end < file_.size() && !is_gap(file_[end]))
+            ++end;
         ended_ = at_ == file_.size();
         const auto value = parse_float(file_.substr(at_, end - at_));
         if (!value) return std::nullopt;

@@ -6,6 +6,7 @@
 #include "renderer/io/text.h"
 #include "renderer/io/triangulate.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -24,7 +25,7 @@ constexpr std::array<std::string_view, 3> kKinds{"v", "vt", "vn"};
 class ObjReader {
 public:
     ObjReader(std::string_view text, CompanionFiles& files, const Limits& limits)
-        : lines_(text, true), files_(files), limits_(limits)
+        : text_(text), lines_(text, true), files_(files), limits_(limits)
     {
     }
     ImportResult read();
@@ -37,7 +38,10 @@ private:
     Check texture_coordinates(std::string_view rest);
     Check normal(std::string_view rest);
     Check face(std::string_view rest);
+    bool plain_triangle(std::string_view rest);
+    Check polygon();
     Check corner(std::string_view word, ObjCorner& corner);
+    Check few_enough() const;
     Check references() const;
     void group(bool object, std::string_view name);
     void use_material(std::string_view name);
@@ -57,6 +61,7 @@ private:
         return fault("truncated", what + ", and the file ends there: send it whole");
     }
 
+    std::string_view text_;
     Lines lines_;
     CompanionFiles& files_;
     const Limits& limits_;
@@ -108,20 +113,21 @@ ObjReader::Check ObjReader::normal(std::string_view rest)
 // v, v/vt, v//vn or v/vt/vn; counted from 1, or from the last one backwards if negative.
 ObjReader::Check ObjReader::corner(std::string_view word, ObjCorner& corner)
 {
-    const std::string_view whole = word;
     const std::array<std::uint64_t, 3> known{obj_.positions.size(), obj_.uvs.size(), obj_.normals.size()};
-    for (std::size_t kind = 0; kind < 3 && !(kind && word.empty()); ++kind) {
-        const std::size_t slash = std::min(word.find('/'), word.size());
-        const std::string_view number = word.substr(0, slash);
-        word.remove_prefix(std::min(slash + 1, word.size()));
+    const char* at = word.data();
+    const char* const end = at + word.size();
+    for (std::size_t kind = 0; kind < 3 && !(kind && at == end); ++kind) {
+        const char* const slash = std::find(at, end, '/');
+        const std::string_view number(at, static_cast<std::size_t>(slash - at));
+        at = slash == end ? end : slash + 1;
         if (number.empty() && kind) continue;
         const auto index = parse_integer(number);
-        if (!index) return unreadable("face corner " + quoted(whole) + " is not v, v/vt, v//vn or v/vt/vn");
+        if (!index) return unreadable("face corner " + quoted(word) + " is not v, v/vt, v//vn or v/vt/vn");
         const std::int64_t from_zero =
             *index > 0 ? *index - 1 : static_cast<std::int64_t>(known[kind]) + *index;
         if (*index == 0 || from_zero < 0 || from_zero >= ObjCorner::kNone)
             return fault("index_out_of_range",
-                         "face corner " + quoted(whole) + " names " + std::string(kKinds[kind]) + " " +
+                         "face corner " + quoted(word) + " names " + std::string(kKinds[kind]) + " " +
                              std::to_string(*index) + "; " + std::to_string(known[kind]) + " are known here");
         corner.at[kind] = static_cast<std::uint32_t>(from_zero);
         if (*index > 0 && std::uint64_t(*index) > largest_[kind]) {
@@ -129,12 +135,53 @@ ObjReader::Check ObjReader::corner(std::string_view word, ObjCorner& corner)
             largest_line_[kind] = lines_.number();
         }
     }
-    if (!word.empty()) return unreadable("face corner " + quoted(whole) + " has more than three numbers");
+    if (at != end) return unreadable("face corner " + quoted(word) + " has more than three numbers");
     return std::nullopt;
+}
+
+// A triangle of plain positive numbers, as most lines of most files are. False, and nothing is taken, where
+// the line is anything else.
+bool ObjReader::plain_triangle(std::string_view rest)
+{
+    const char* at = rest.data();
+    const char* const end = at + rest.size();
+    std::array<ObjCorner, 3> triangle;
+    std::array<std::uint32_t, 3> largest{};
+    for (ObjCorner& c : triangle) {
+        while (at < end && is_blank(*at))
+            ++at;
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            constexpr std::ptrdiff_t kMostDigits = 9; // surely less than 2^32
+            std::uint32_t number = 0;
+            const char* const first = at;
+            for (; at < end && static_cast<unsigned char>(*at - '0') < 10; ++at)
+                number = number * 10 + static_cast<std::uint32_t>(*at - '0');
+            if (at - first > kMostDigits || (number == 0 && (at != first || kind != 1))) return false;
+            if (number > 0) c.at[kind] = number - 1;
+            largest[kind] = std::max(largest[kind], number);
+            if (at == end || *at != '/') break;
+            ++at;
+        }
+        if (at < end && !is_blank(*at)) return false;
+    }
+    while (at < end && is_blank(*at))
+        ++at;
+    if (at != end) return false;
+    for (std::size_t kind = 0; kind < 3; ++kind)
+        if (largest[kind] > largest_[kind]) {
+            largest_[kind] = largest[kind];
+            largest_line_[kind] = lines_.number();
+        }
+    obj_.add_triangle(triangle[0], triangle[1], triangle[2]);
+    return true;
 }
 
 ObjReader::Check ObjReader::face(std::string_view rest)
 {
+    if (plain_triangle(rest)) {
+        if (obj_.triangles() > limits_.triangles) return over_triangle_limit(obj_.triangles(), limits_, true);
+        return std::nullopt;
+    }
     corners_.clear();
     while (true) {
         const std::string_view word = take_word(rest);
@@ -147,19 +194,28 @@ ObjReader::Check ObjReader::face(std::string_view rest)
         ++lines_and_points_;
         return std::nullopt;
     }
+    if (corners_.size() == 3)
+        obj_.add_triangle(corners_[0], corners_[1], corners_[2]);
+    else if (auto bad = polygon())
+        return bad;
+    if (obj_.triangles() > limits_.triangles) return over_triangle_limit(obj_.triangles(), limits_, true);
+    return std::nullopt;
+}
+
+ObjReader::Check ObjReader::polygon()
+{
     outline_.clear();
     // A face may name vertices that come later: its outline is then not yet known, and a fan has to do.
     for (const ObjCorner& c : corners_)
-        outline_.push_back(c.at[0] < obj_.positions.size() ? obj_.positions[c.at[0]] : Vec3d{});
+        outline_.push_back(c.at[0] < obj_.positions.size() ? std::as_const(obj_).positions[c.at[0]]
+                                                           : Vec3d{});
     pieces_.clear();
     if (!triangulate(outline_, pieces_))
         return fault("over_limit",
                      "a concave polygon of " + std::to_string(corners_.size()) + " corners, the limit is " +
                          std::to_string(kMostConcaveCorners) + ": export triangles");
     for (const Triangle& t : pieces_)
-        obj_.add_triangle({corners_[t[0]], corners_[t[1]], corners_[t[2]]});
-    if (obj_.triangles.size() > limits_.triangles)
-        return over_triangle_limit(obj_.triangles.size(), limits_, true);
+        obj_.add_triangle(corners_[t[0]], corners_[t[1]], corners_[t[2]]);
     return std::nullopt;
 }
 
@@ -268,9 +324,11 @@ void ObjReader::finish_materials()
         if (!numbers.contains(name) && result_.notes.size() < kMostNotes)
             result_.notes.push_back("material " + quoted(name) + " is in no material file; it is grey");
     }
-    for (std::uint32_t name : obj_.triangle_materials)
-        result_.mesh.triangle_materials.push_back(name == ObjCorner::kNone ? number_of(nullptr)
-                                                                           : number_by_name[name]);
+    Array<std::uint16_t>& numbered = result_.mesh.triangle_materials;
+    numbered.reserve(obj_.triangles());
+    for (std::uint32_t name : std::as_const(obj_).triangle_materials)
+        numbered.push_back(name == ObjCorner::kNone ? number_of(nullptr) : number_by_name[name]);
+    if (numbered.empty() && obj_.triangles() > 0) numbered.append(obj_.triangles(), number_of(nullptr));
     if (grey) materials.insert(materials.begin() + *grey, MeshMaterial{});
 }
 
@@ -283,8 +341,28 @@ void ObjReader::finish_notes()
         result_.notes.push_back(std::to_string(free_form_) + " free-form curves and surfaces were left out");
 }
 
+// Of a file so large that it could have more than the limit: a corner takes two bytes at least.
+ObjReader::Check ObjReader::few_enough() const
+{
+    if (text_.size() / 2 <= limits_.triangles) return std::nullopt;
+    std::uint64_t triangles = 0;
+    Lines lines(text_, true);
+    while (const auto line = lines.next()) {
+        std::string_view rest = *line;
+        const std::string_view word = take_word(rest);
+        if (word != "f" && word != "fo") continue;
+        std::uint64_t corners = 0;
+        for (auto next = take_word(rest); !next.empty() && next.front() != '#'; next = take_word(rest))
+            ++corners;
+        triangles += corners < 3 ? 0 : corners - 2;
+    }
+    if (triangles > limits_.triangles) return over_triangle_limit(triangles, limits_, false);
+    return std::nullopt;
+}
+
 ImportResult ObjReader::read()
 {
+    if (auto bad = few_enough()) return std::move(*bad);
     while (const auto line = lines_.next()) {
         std::string_view rest = *line;
         const std::string_view word = take_word(rest);

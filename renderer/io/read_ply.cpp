@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
@@ -79,6 +80,8 @@ private:
     Check polygon(const Item& who);
     Check strips(const Item& who);
     Check add(const Triangle& triangle);
+    bool plain_vertices(const PlyElement& element, const std::vector<std::size_t>& slots, Check& bad);
+    void plain_triangles(const PlyElement& element, std::uint64_t& done);
 
     ImportFault no_value(const Item& who) const
     {
@@ -91,7 +94,7 @@ private:
     PlyValues values_;
     const Limits& limits_;
     ImportedMesh result_;
-    std::vector<Vec3d> in_file_; // positions that are more than floats
+    Array<Vec3d> in_file_; // positions that are more than floats
     std::vector<std::int64_t> indices_;
     std::vector<Vec3d> outline_;
     std::vector<Triangle> pieces_;
@@ -122,7 +125,13 @@ PlyReader::Check PlyReader::promises_fit() const
                                    " bytes are left for them"};
         room -= element.count * each;
     }
-    return std::nullopt;
+    std::uint64_t vertices = 0, faces = 0;
+    for (const PlyElement& element : header_.elements) {
+        if (element.name == "vertex" && vertices == 0) vertices = element.count;
+        if (element.name == "face") faces += element.count;
+    }
+    if (faces > limits_.triangles) return over_triangle_limit(faces, limits_, false);
+    return over_output_limit(vertices, faces, limits_);
 }
 
 PlyReader::Check PlyReader::list(const PlyProperty& property, const Item& who, bool keep)
@@ -174,6 +183,43 @@ PlyReader::Check PlyReader::vertex(const PlyElement& element,
     return std::nullopt;
 }
 
+// Vertices of x, y, z as floats of this machine, whatever numbers stand beside them: most files. False where
+// they are not that.
+bool PlyReader::plain_vertices(const PlyElement& element, const std::vector<std::size_t>& slots, Check& bad)
+{
+    const char* at = values_.as_they_stand();
+    std::size_t stride = 0, position = 0, next = 0; // slot
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        if (!at || property.is_list) return false;
+        if (slots[i] == 0) position = stride;
+        if (slots[i] != kUnused && (slots[i] != next || slots[i] > 2 || property.type != PlyType::float32 ||
+                                    stride != position + next++ * sizeof(float)))
+            return false;
+        stride += size_of(property.type);
+    }
+    if (next != 3 || element.count > values_.bytes_left() / stride) return false;
+    Array<Vec3f>& positions = result_.mesh.positions;
+    positions.resize_for_overwrite(element.count);
+    for (Vec3f& p : positions) {
+        std::memcpy(static_cast<void*>(&p), at + position, sizeof p);
+        if (!is_finite(p)) {
+            std::size_t axis = 0;
+            while (std::isfinite(p[axis]))
+                ++axis;
+            values_.skip_bytes(position + (axis + 1) * sizeof(float));
+            bad = ImportFault{"non_finite",
+                              "vertex " + std::to_string(vertex_count_) + ", before " + values_.place() +
+                                  ": " + std::string(1, "xyz"[axis]) + " is not finite"};
+            return true;
+        }
+        at += stride;
+        values_.skip_bytes(stride);
+        ++vertex_count_;
+    }
+    return true;
+}
+
 PlyReader::Check PlyReader::vertices(const PlyElement& element)
 {
     std::vector<std::size_t> slots;
@@ -183,6 +229,8 @@ PlyReader::Check PlyReader::vertices(const PlyElement& element)
     if (!has[0] || !has[1] || !has[2])
         return ImportFault{"malformed", "element vertex has no properties x, y and z"};
     const bool normals = has[3] && has[4] && has[5], uvs = has[6] && has[7];
+    Check bad_number;
+    if (plain_vertices(element, slots, bad_number)) return bad_number;
     const bool floats = has_float_places(element);
     Mesh& mesh = result_.mesh;
     if (floats)
@@ -271,6 +319,31 @@ PlyReader::Check PlyReader::strips(const Item& who)
     return std::nullopt;
 }
 
+// Takes triangles as long as one follows another as they do in most files, a byte of 3 and three sound
+// indices of 32 bits: what is anything else is left to the long way.
+void PlyReader::plain_triangles(const PlyElement& element, std::uint64_t& done)
+{
+    const PlyProperty& list = element.properties.front();
+    const char* at = values_.as_they_stand();
+    if (!at || element.properties.size() != 1 || size_of(list.count_type) != 1 ||
+        (list.type != PlyType::int32 && list.type != PlyType::uint32))
+        return;
+    constexpr std::size_t kBytes = 1 + sizeof(Triangle);
+    const std::uint64_t room = std::min<std::uint64_t>({element.count - done,
+                                                        values_.bytes_left() / kBytes,
+                                                        limits_.triangles - result_.mesh.triangles.size()});
+    std::uint64_t taken = 0;
+    for (; taken < room && *at == 3; ++taken, at += kBytes) {
+        Triangle triangle;
+        std::memcpy(&triangle, at + 1, sizeof triangle);
+        // Negative ones are large here.
+        if (std::max({triangle[0], triangle[1], triangle[2]}) >= vertex_count_) break;
+        result_.mesh.triangles.push_back(triangle);
+    }
+    values_.skip_bytes(taken * kBytes);
+    done += taken;
+}
+
 PlyReader::Check PlyReader::faces(const PlyElement& element, Build build)
 {
     std::size_t wanted = element.properties.size();
@@ -278,7 +351,11 @@ PlyReader::Check PlyReader::faces(const PlyElement& element, Build build)
         if (is_index_list(element.properties[i])) wanted = i;
     if (wanted == element.properties.size() && element.count > 0)
         return ImportFault{"malformed", "element " + quoted(element.name) + " has no list vertex_indices"};
+    const bool are_polygons = build == &PlyReader::polygon;
+    if (are_polygons) result_.mesh.triangles.reserve(result_.mesh.triangles.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
+        if (are_polygons) plain_triangles(element, i);
+        if (i == element.count) break;
         for (std::size_t p = 0; p < element.properties.size(); ++p) {
             const PlyProperty& property = element.properties[p];
             if (property.is_list) {

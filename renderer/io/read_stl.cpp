@@ -4,6 +4,7 @@
 #include "renderer/io/import_bounds.h"
 #include "renderer/io/text.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -16,7 +17,7 @@ namespace renderer {
 
 namespace {
 
-constexpr std::size_t kHeadBytes = 84, kFacetBytes = 50;
+constexpr std::size_t kHeadBytes = 84, kFacetBytes = 50, kNormalBytes = 12;
 
 // The 32-bit little-endian word at `offset`.
 std::uint32_t word_at(std::string_view bytes, std::size_t offset)
@@ -31,7 +32,13 @@ std::uint32_t word_at(std::string_view bytes, std::size_t offset)
 template <typename T>
 class VertexTable {
 public:
-    explicit VertexTable(std::vector<Vec3<T>>& positions) : positions_(positions), slots_(1024, kEmpty) {}
+    // `expected` vertices fit without growing.
+    explicit VertexTable(Array<Vec3<T>>& positions, std::size_t expected = 0)
+        : positions_(positions), slots_(std::bit_ceil(std::max<std::size_t>(2 * expected, 1024)), kEmpty)
+    {
+    }
+    // Fetches what add() will look at first, which lies anywhere in memory.
+    void expect(Vec3<T> p) const { __builtin_prefetch(&slots_[slot_of(p + Vec3<T>{})]); }
 
     std::uint32_t add(Vec3<T> p)
     {
@@ -73,7 +80,7 @@ private:
         }
     }
 
-    std::vector<Vec3<T>>& positions_;
+    Array<Vec3<T>>& positions_;
     std::vector<std::uint32_t> slots_;
 };
 
@@ -186,7 +193,7 @@ private:
     Words words_;
     const Limits& limits_;
     ImportedMesh result_;
-    std::vector<Vec3d> in_file_;
+    Array<Vec3d> in_file_;
     VertexTable<double> vertices_{in_file_};
     ImportFault fault_;
     bool closed_ = false;
@@ -215,20 +222,30 @@ ImportResult read_binary_stl(std::string_view bytes, const Limits& limits)
                                std::to_string(wanted) + " bytes; the file has " +
                                std::to_string(bytes.size())};
     if (facets > limits.triangles) return over_triangle_limit(facets, limits, false);
+    if (auto bad = over_output_limit(0, facets, limits)) return std::move(*bad);
     ImportedMesh result;
-    VertexTable<float> vertices(result.mesh.positions);
-    result.mesh.triangles.resize(facets);
+    VertexTable<float> vertices(result.mesh.positions, facets / 2); // as many as a closed surface has
+    result.mesh.triangles.resize_for_overwrite(facets);
+    const auto corner = [&](std::uint32_t facet, std::size_t i) {
+        Vec3f p;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            p[axis] = std::bit_cast<float>(
+                word_at(bytes, kHeadBytes + facet * kFacetBytes + kNormalBytes + 12 * i + 4 * axis));
+        return p;
+    };
+    constexpr std::uint32_t kAhead = 6; // facets
     for (std::uint32_t facet = 0; facet < facets; ++facet) {
-        const std::size_t corners = kHeadBytes + facet * kFacetBytes + 12; // after the normal
+        if (facets - facet > kAhead)
+            for (std::size_t i = 0; i < 3; ++i)
+                vertices.expect(corner(facet + kAhead, i));
         for (std::size_t i = 0; i < 3; ++i) {
-            Vec3f p;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                p[axis] = std::bit_cast<float>(word_at(bytes, corners + 12 * i + 4 * axis));
+            const Vec3f p = corner(facet, i);
             if (!is_finite(p))
-                return ImportFault{"non_finite",
-                                   "byte " + std::to_string(corners + 12 * i) + ": vertex " +
-                                       std::to_string(i) + " of facet " + std::to_string(facet) +
-                                       " is not finite"};
+                return ImportFault{
+                    "non_finite",
+                    "byte " + std::to_string(kHeadBytes + facet * kFacetBytes + kNormalBytes + 12 * i) +
+                        ": vertex " + std::to_string(i) + " of facet " + std::to_string(facet) +
+                        " is not finite"};
             result.mesh.triangles[facet][i] = vertices.add(p);
         }
     }

@@ -1,6 +1,8 @@
 #include "renderer/io/text.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -57,7 +59,70 @@ std::string lower_case(std::string_view text)
     return lower;
 }
 
-std::optional<float> parse_float(std::string_view word)
+namespace {
+
+bool is_digit(char c)
+{
+    return static_cast<unsigned char>(c - '0') < 10;
+}
+
+// The plain decimals that files are full of: up to 19 digits, a small exponent, no more than what is exact in
+// double: then one division or product rounds once, and right (Clinger, "How to Read Floating Point Numbers
+// Accurately", PLDI 1990). Sets `at` behind the number; false where the long way has to be gone.
+bool quick_double(const char*& at, const char* end, double& value)
+{
+    static constexpr std::array<double, 23> kPowers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                    1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                    1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    constexpr std::uint64_t kMostExact = 1ull << 53;
+    const char* p = at;
+    const bool negative = p < end && *p == '-';
+    if (negative) ++p;
+    std::uint64_t digits = 0;
+    const char* const first = p;
+    for (; p < end && is_digit(*p); ++p)
+        digits = digits * 10 + static_cast<std::uint64_t>(*p - '0');
+    std::ptrdiff_t count = p - first, places = 0;
+    if (p < end && *p == '.') {
+        const char* const point = ++p;
+        for (; p < end && is_digit(*p); ++p)
+            digits = digits * 10 + static_cast<std::uint64_t>(*p - '0');
+        places = p - point;
+        count += places;
+    }
+    if (count == 0 || count > 19 || digits > kMostExact) return false;
+    std::ptrdiff_t exponent = -places;
+    if (p < end && (*p == 'e' || *p == 'E')) {
+        const char* q = p + 1;
+        const bool below = q < end && *q == '-';
+        if (q < end && (*q == '-' || *q == '+')) ++q;
+        std::ptrdiff_t power = 0;
+        const char* const power_first = q;
+        for (; q < end && is_digit(*q) && power < 1000; ++q)
+            power = power * 10 + (*q - '0');
+        if (q == power_first) return false;
+        exponent += below ? -power : power;
+        p = q;
+    }
+    if (exponent < -22 || exponent > 22) return false;
+    value = static_cast<double>(digits);
+    value = exponent < 0 ? value / kPowers[static_cast<std::size_t>(-exponent)]
+                         : value * kPowers[static_cast<std::size_t>(exponent)];
+    if (negative) value = -value;
+    at = p;
+    return true;
+}
+
+// A double that was rounded right rounds on to the right float, unless it came to lie half way between two.
+bool rounds_twice_alike(double value)
+{
+    constexpr std::uint64_t kLeftOut = (1ull << 29) - 1, kHalf = 1ull << 28;
+    const double size = std::abs(value);
+    return (std::bit_cast<std::uint64_t>(value) & kLeftOut) != kHalf &&
+           (size == 0 || (size > 1e-37 && size < 1e38));
+}
+
+std::optional<float> parse_float_slowly(std::string_view word)
 {
     if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
     const char* const end = word.data() + word.size();
@@ -76,6 +141,18 @@ std::optional<float> parse_float(std::string_view word)
     return word.find("e-") != word.npos || word.find("E-") != word.npos ? sign * 0.0f : sign * infinity;
 }
 
+} // namespace
+
+std::optional<float> parse_float(std::string_view word)
+{
+    const char* at = word.data();
+    const char* const end = at + word.size();
+    double value = 0;
+    if (quick_double(at, end, value) && at == end && rounds_twice_alike(value))
+        return static_cast<float>(value);
+    return parse_float_slowly(word);
+}
+
 std::optional<std::int64_t> parse_integer(std::string_view word)
 {
     if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
@@ -88,7 +165,16 @@ std::optional<std::int64_t> parse_integer(std::string_view word)
 
 std::optional<float> take_float(std::string_view& line)
 {
-    return parse_float(take_word(line));
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    while (at < end && is_blank(*at))
+        ++at;
+    double value = 0;
+    if (quick_double(at, end, value) && (at == end || is_blank(*at)) && rounds_twice_alike(value)) {
+        line.remove_prefix(static_cast<std::size_t>(at - line.data()));
+        return static_cast<float>(value);
+    }
+    return parse_float_slowly(take_word(line));
 }
 
 std::optional<Vec3f> take_vec3(std::string_view& line)
@@ -100,9 +186,11 @@ std::optional<Vec3f> take_vec3(std::string_view& line)
 
 std::optional<double> parse_double(std::string_view word)
 {
+    const char* at = word.data();
+    double value = 0;
+    if (quick_double(at, word.data() + word.size(), value) && at == word.data() + word.size()) return value;
     if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
     const char* const end = word.data() + word.size();
-    double value = 0;
     const auto parsed = std::from_chars(word.data(), end, value);
     if (parsed.ptr != end || parsed.ec == std::errc::invalid_argument) return std::nullopt;
     if (parsed.ec == std::errc()) return value;
@@ -112,10 +200,21 @@ std::optional<double> parse_double(std::string_view word)
 
 std::optional<Vec3d> take_point(std::string_view& line)
 {
-    const auto x = parse_double(take_word(line)), y = parse_double(take_word(line)),
-               z = parse_double(take_word(line));
-    if (!x || !y || !z) return std::nullopt;
-    return Vec3d{*x, *y, *z};
+    Vec3d point;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const char* at = line.data();
+        const char* const end = at + line.size();
+        while (at < end && is_blank(*at))
+            ++at;
+        if (quick_double(at, end, point[axis]) && (at == end || is_blank(*at))) {
+            line.remove_prefix(static_cast<std::size_t>(at - line.data()));
+            continue;
+        }
+        const auto value = parse_double(take_word(line));
+        if (!value) return std::nullopt;
+        point[axis] = *value;
+    }
+    return point;
 }
 
 std::string_view Lines::take()

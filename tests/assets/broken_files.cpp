@@ -1,5 +1,6 @@
 #include "tests/assets/broken_files.h"
 
+#include "tests/assets/broken_file.h"
 #include "tests/assets/shapes.h"
 #include "tests/assets/write_files.h"
 
@@ -8,23 +9,7 @@
 namespace tests {
 namespace {
 
-struct BrokenFile {
-    std::string name;
-    std::string codes;
-    std::string what;
-    std::string bytes;
-};
 using Files = std::vector<BrokenFile>;
-
-std::string cut(const std::string& bytes, double fraction)
-{
-    return bytes.substr(0, static_cast<std::size_t>(static_cast<double>(bytes.size()) * fraction));
-}
-
-std::string replaced(std::string text, std::string_view from, std::string_view to)
-{
-    return text.replace(text.find(from), from.size(), to);
-}
 
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -360,6 +345,7 @@ void write_broken_files(const std::filesystem::path& folder)
     add_without_triangles(files, sphere);
     add_foreign(files, sphere);
     add_traps(files);
+    add_broken_scenes(files);
     std::string manifest;
     for (const BrokenFile& file : files) {
         write_file(folder / file.name, file.bytes);

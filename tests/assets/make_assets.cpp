@@ -3,6 +3,7 @@
 #include "tests/assets/broken_files.h"
 #include "tests/assets/shapes.h"
 #include "tests/assets/write_files.h"
+#include "tests/assets/write_scenes.h"
 
 #include <cstdio>
 #include <exception>
@@ -21,6 +22,11 @@ void write_knot(const std::filesystem::path& folder)
     write_file(folder / "knot_ascii.ply", ply_bytes(knot, Encoding::ascii));
     write_file(folder / "knot.stl", stl_bytes(knot, Encoding::binary));
     write_file(folder / "knot_ascii.stl", stl_bytes(knot, Encoding::ascii));
+    write_file(folder / "knot.off", off_text(knot));
+    write_file(folder / "knot.dae", collada_text(knot));
+    write_file(folder / "knot.fbx", fbx_bytes(knot));
+    write_file(folder / "knot_ascii.fbx", fbx_text(knot));
+    write_file(folder / "knot.3ds", three_ds_bytes(knot));
     const std::vector<tests::GltfMesh> meshes{{knot, {0.7f, 0.35f, 0.15f}}};
     const std::vector<tests::GltfNode> nodes{{"knot", 0, {}, ""}};
     write_file(folder / "knot.glb", glb_bytes(gltf_text(meshes, nodes, {0}, "")));
@@ -63,12 +69,25 @@ void write_parts(const std::filesystem::path& folder)
     write_file(folder / "parts.glb", glb_bytes(gltf_text(meshes, nodes, {0, 1}, "")));
 }
 
+// A box of 1 x 2 x 4 as those would write it whose units and axes are others.
+void write_frames(const std::filesystem::path& folder)
+{
+    const tests::AssetMesh box = tests::make_box(1, 2, 4);
+    write_file(folder / "inches_z_up.dae",
+               collada_text(box, {.asset = "<unit name=\"inch\" meter=\"0.0254\"/><up_axis>Z_UP</up_axis>"}));
+    write_file(folder / "x_up.dae", collada_text(box, {.asset = "<up_axis>X_UP</up_axis>"}));
+    write_file(folder / "inches_z_up.fbx", fbx_bytes(box, {.up_axis = 2, .unit_cm = 2.54}));
+    write_file(folder / "x_up_ascii.fbx", fbx_text(box, {.up_axis = 0, .unit_cm = 100}));
+    write_file(folder / "box.3ds", three_ds_bytes(box));
+}
+
 void write_all(const std::filesystem::path& folder)
 {
     std::filesystem::create_directories(folder);
     write_knot(folder);
     write_with_materials(folder);
     write_parts(folder);
+    write_frames(folder);
     write_file(folder / "sphere.obj", "o sphere\n" + obj_text(tests::make_sphere(0.5, 64, 32)));
     write_file(folder / "sphere.ply", ply_bytes(tests::make_sphere(0.5, 64, 32), Encoding::binary));
     write_file(folder / "strips.ply",

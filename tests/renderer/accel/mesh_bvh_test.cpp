@@ -161,7 +161,7 @@ TEST(MeshBvh, PrefersTheLowestNumberAmongEquals)
     Mesh mesh = grid(3, 1);
     const auto once = mesh.triangles;
     for (int copy = 0; copy < 5; ++copy)
-        mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
+        mesh.triangles.append(once);
     Random random(15);
     for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint}) {
         const MeshBvh bvh = build(mesh, split);

@@ -70,7 +70,7 @@ TEST(ValidateMesh, RefusesArraysThatDoNotFit)
     expect_fault([](Mesh& m) { m.triangles.clear(); }, "no_triangles", "no triangles");
     expect_fault([](Mesh& m) { m = Mesh{}; }, "no_triangles", "no triangles");
     expect_fault([](Mesh& m) { m.normals.pop_back(); }, "inconsistent", "23 normals for 24 vertices");
-    expect_fault([](Mesh& m) { m.uvs.emplace_back(); }, "inconsistent", "25 texture coordinates");
+    expect_fault([](Mesh& m) { m.uvs.push_back({}); }, "inconsistent", "25 texture coordinates");
     expect_fault([](Mesh& m) { m.triangle_materials.pop_back(); }, "inconsistent", "11 material numbers");
     expect_fault([](Mesh& m) { m.positions.clear(); }, "inconsistent", "for 0 vertices");
 }

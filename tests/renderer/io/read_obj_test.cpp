@@ -16,7 +16,8 @@ using Files = std::map<std::string, std::string, std::less<>>;
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-renderer::ImportResult read(const std::string& text, const Files& files = {})
+renderer::ImportResult
+read(const std::string& text, const Files& files = {}, const renderer::Limits& limits = {})
 {
     const renderer::OpenFile open = [&](std::string_view name) -> std::optional<std::span<const std::byte>> {
         const auto file = files.find(name);
@@ -24,7 +25,7 @@ renderer::ImportResult read(const std::string& text, const Files& files = {})
         return std::as_bytes(std::span(file->second));
     };
     renderer::CompanionFiles companions(open);
-    return renderer::read_obj(text, companions, {});
+    return renderer::read_obj(text, companions, limits);
 }
 
 ImportedMesh mesh_of(const std::string& text, const Files& files = {})
@@ -284,6 +285,39 @@ TEST(ReadObj, ReadsNumbersTooSmallForAFloatAsZero)
     EXPECT_EQ(mesh.positions[0].x, 0);
     EXPECT_EQ(mesh.positions[0].y, 0);
     EXPECT_GT(mesh.positions[0].z, 0); // subnormal, but there
+}
+
+TEST(ReadObj, ReadsPlainTrianglesAsItReadsAnyOthers)
+{
+    const std::string many = "vt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 1 0\n";
+    for (const char* corners :
+         {"1 2 3", "1/1 2/2 3/1", "1//1 2//2 3//1", "1/1/1 2/2/2 3/1/2", "1/ 2/ 3/", "1 2/1 3//2"}) {
+        const Mesh quick = mesh_of(kSquare + many + "f " + corners + "\n").mesh;
+        const Mesh slow = mesh_of(kSquare + many + "f " + corners + " # so\n").mesh;
+        EXPECT_EQ(quick.triangles, slow.triangles) << corners;
+        EXPECT_EQ(quick.positions, slow.positions) << corners;
+        EXPECT_EQ(quick.normals, slow.normals) << corners;
+        EXPECT_EQ(quick.uvs, slow.uvs) << corners;
+    }
+    for (const char* corners :
+         {"1 2 0", "1/ /2 3", "1 2 3/", "1 2 3//", "1/1/1/1 2 3", "1 2 4294967297", "1 2 x"}) {
+        const auto quick = read(kSquare + "f " + corners + "\n"),
+                   slow = read(kSquare + "f " + corners + " # so\n");
+        ASSERT_EQ(quick.index(), slow.index()) << corners;
+        if (const auto* fault = std::get_if<ImportFault>(&quick)) {
+            EXPECT_EQ(fault->detail, std::get<ImportFault>(slow).detail) << corners;
+        }
+    }
+}
+
+TEST(ReadObj, CountsTheTrianglesOfALargeFileBeforeItReadsIt)
+{
+    renderer::Limits limits;
+    limits.triangles = 2;
+    const auto result =
+        read(kSquare + "f 1 2 3 4\nf 1 2 3 # 4 5 6\nf 1 2\nf 1 \\\n 2 3\nv nan 0 0\n", {}, limits);
+    ASSERT_TRUE(std::holds_alternative<ImportFault>(result));
+    EXPECT_EQ(std::get<ImportFault>(result).detail, "4 triangles, the limit is 2 (--limit-triangles)");
 }
 
 } // namespace

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -130,6 +132,61 @@ TEST(ReadPly, NamesTheLineOfAWordThatIsNoNumber)
         fault_of("ply\nformat ascii 1.0\n" + kVertices + "end_header\n0 0 0\n1 x 0\n0 0 0\n0 0 0\n");
     EXPECT_EQ(fault.code, "malformed");
     EXPECT_THAT(fault.detail, testing::HasSubstr("line 9"));
+}
+
+// A binary file of three vertices, of the named floats, and one triangle.
+std::string floats(const std::string& names, const std::vector<float>& values, const std::string& face)
+{
+    std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n";
+    for (const char name : names)
+        bytes += std::string("property float ") + name + "\n";
+    bytes += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+    return bytes + face;
+}
+
+TEST(ReadPly, ReadsPositionsWhereverTheyStandAmongOtherNumbers)
+{
+    const std::string face("\x03\0\0\0\0\x01\0\0\0\x02\0\0\0", 13);
+    const renderer::Array<renderer::Vec3f> wanted{{0, 1, 2}, {3, 4, 5}, {6, 7, 9}};
+    EXPECT_EQ(mesh_of(floats("xyz", {0, 1, 2, 3, 4, 5, 6, 7, 9}, face)).mesh.positions, wanted);
+    EXPECT_EQ(mesh_of(floats("axyzb", {9, 0, 1, 2, 9, 9, 3, 4, 5, 9, 9, 6, 7, 9, 9}, face)).mesh.positions,
+              wanted);
+    EXPECT_EQ(mesh_of(floats("zyx", {2, 1, 0, 5, 4, 3, 9, 7, 6}, face)).mesh.positions, wanted);
+    EXPECT_EQ(mesh_of(floats("xayz", {0, 9, 1, 2, 3, 9, 4, 5, 6, 9, 7, 9}, face)).mesh.positions, wanted);
+    // Of two of a name the last counts.
+    EXPECT_EQ(mesh_of(floats("xyzx", {8, 1, 2, 0, 8, 4, 5, 3, 8, 7, 9, 6}, face)).mesh.positions, wanted);
+}
+
+TEST(ReadPly, TellsWhichNumberIsNotFiniteAndWhichVertexIsNotThere)
+{
+    const std::string face("\x03\0\0\0\0\x01\0\0\0\x02\0\0\0", 13);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const ImportFault bad = fault_of(floats("xyz", {0, 0, 0, 1, nan, 0, 0, 1, 0}, face));
+    EXPECT_EQ(bad.code, "non_finite");
+    EXPECT_THAT(bad.detail, testing::HasSubstr("vertex 1, before byte 189: y is not finite"));
+    std::string far = face;
+    far[9] = 3;
+    EXPECT_EQ(fault_of(floats("xyz", {0, 0, 0, 1, 0, 0, 0, 1, 0}, far)).code, "index_out_of_range");
+    far[12] = '\x80';
+    EXPECT_EQ(fault_of(floats("xyz", {0, 0, 0, 1, 0, 0, 0, 1, 0}, far)).code, "index_out_of_range");
+}
+
+TEST(ReadPly, RefusesTooManyFacesBeforeItTakesAVertex)
+{
+    renderer::Limits limits;
+    limits.triangles = 1;
+    const std::string two = "ply\nformat ascii 1.0\n" + kVertices +
+                            "element face 2\nproperty list uchar int vertex_indices\nend_header\n" +
+                            "nothing that a number could be, but long enough for what the header says ";
+    const auto result = renderer::read_ply(two, limits);
+    ASSERT_TRUE(std::holds_alternative<ImportFault>(result));
+    EXPECT_EQ(std::get<ImportFault>(result).detail, "2 triangles, the limit is 1 (--limit-triangles)");
+    limits = {};
+    limits.import_output_bytes = 71;
+    const auto large = renderer::read_ply(two, limits);
+    ASSERT_TRUE(std::holds_alternative<ImportFault>(large));
+    EXPECT_THAT(std::get<ImportFault>(large).detail, testing::HasSubstr("take at least 72 bytes"));
 }
 
 } // namespace

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <charconv>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 namespace {
@@ -25,6 +27,52 @@ TEST(Text, ReadsNumbersToTheLastBit)
     EXPECT_EQ(renderer::parse_integer("-7"), -7);
     for (const char* word : {"", "1.0", "+-7", "99999999999999999999"})
         EXPECT_FALSE(renderer::parse_integer(word)) << word;
+}
+
+// The short way of reading a number has no say in what it is.
+TEST(Text, ReadsEveryDecimalAsTheLibraryDoes)
+{
+    std::uint64_t state = 88172645463325252u;
+    const auto random = [&](std::uint64_t most) {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        return state % most;
+    };
+    for (int round = 0; round < 200'000; ++round) {
+        std::string word = random(2) ? "-" : "";
+        for (std::uint64_t digits = 1 + random(12); digits-- > 0;)
+            word += static_cast<char>('0' + random(10));
+        if (random(4)) word += '.';
+        if (word.back() == '.')
+            for (std::uint64_t digits = random(14); digits-- > 0;)
+                word += static_cast<char>('0' + random(10));
+        if (random(4) == 0) word += (random(2) ? "e-" : "E+") + std::to_string(random(30));
+        if (round % 16 == 0) { // half way between two floats, and the doubles beside that
+            const double half = 1 + 0x1p-24 + static_cast<double>(random(1u << 20)) * 0x1p-23;
+            std::ostringstream text;
+            text.precision(17);
+            text << std::nextafter(half, static_cast<double>(random(3)));
+            word = text.str();
+        }
+        float expected = 0;
+        const auto parsed = std::from_chars(word.data(), word.data() + word.size(), expected);
+        if (parsed.ec != std::errc()) continue;
+        ASSERT_EQ(renderer::parse_float(word), expected) << word;
+        std::string_view line = word;
+        ASSERT_EQ(renderer::take_float(line), expected) << word;
+        ASSERT_TRUE(line.empty()) << word;
+    }
+}
+
+TEST(Text, TakesNumbersOnlyWhereTheyEnd)
+{
+    std::string_view line = " 1.5\t-2e3 7x 8";
+    EXPECT_EQ(renderer::take_float(line), 1.5f);
+    EXPECT_EQ(renderer::take_float(line), -2000.0f);
+    EXPECT_FALSE(renderer::take_float(line));
+    EXPECT_EQ(renderer::take_float(line), 8.0f);
+    EXPECT_FALSE(renderer::take_float(line));
 }
 
 TEST(Text, GivesLinesWithTheirNumbers)

@@ -1,12 +1,15 @@
 // What GET /v1/capabilities names as mesh formats, held against what the importer reads.
 #include "api/documents.h"
 #include "renderer/io/import_mesh.h"
+#include "tests/support/places.h"
+#include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
@@ -47,6 +50,9 @@ TEST(Capabilities, NameExactlyTheMeshFormatsThatAreRead)
 {
     std::map<std::string, std::string> files = kTriangles;
     files["glb"] = glb_of(kTriangles.at("gltf"));
+    for (const char* format : {"fbx", "dae", "3ds", "off"})
+        files[format] =
+            tests::bytes_of(std::filesystem::path(tests::asset_dir()) / (std::string("knot.") + format));
     std::vector<std::string> read;
     for (const auto& [format, text] : files) {
         const auto result = renderer::import_mesh("triangle." + format,
@@ -55,7 +61,8 @@ TEST(Capabilities, NameExactlyTheMeshFormatsThatAreRead)
                                                   {});
         const auto* mesh = std::get_if<renderer::ImportedMesh>(&result);
         ASSERT_NE(mesh, nullptr) << format << ": " << std::get<renderer::ImportFault>(result).detail;
-        EXPECT_EQ(mesh->mesh.triangles.size(), 1U) << format;
+        EXPECT_EQ(mesh->format, format);
+        EXPECT_GT(mesh->mesh.triangles.size(), 0U) << format;
         read.push_back(mesh->format);
     }
     auto told = nlohmann::json::parse(api::write_capabilities({}))["formats"]["meshes"]
@@ -63,6 +70,12 @@ TEST(Capabilities, NameExactlyTheMeshFormatsThatAreRead)
     std::sort(told.begin(), told.end());
     std::sort(read.begin(), read.end());
     EXPECT_EQ(told, read);
+    auto documented =
+        nlohmann::json::parse(api::openapi_json())
+            .at("/components/schemas/AssetInfo/properties/mesh/properties/format/enum"_json_pointer)
+            .get<std::vector<std::string>>();
+    std::sort(documented.begin(), documented.end());
+    EXPECT_EQ(documented, read);
 }
 
 } // namespace
