@@ -12,6 +12,7 @@
 
 #include "renderer/accel/mesh_hit.h"
 #include "renderer/accel/mesh_kernels.h"
+#include "renderer/accel/tree_bytes.h"
 #include "renderer/accel/triangle_block.h"
 #include "renderer/accel/triangle_items.h"
 #include "renderer/accel/wide_bvh.h"
@@ -20,6 +21,7 @@
 #include "renderer/geometry/ray.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -63,6 +65,11 @@ public:
     // The same answers from every triangle in turn: for tests and for measuring.
     std::optional<MeshHit> closest_hit_brute_force(const Ray& ray) const;
     bool any_hit_brute_force(const Ray& ray) const;
+
+    // To be kept on disk, and back: valid as long as this is; nothing if the sizes do not fit.
+    TreeBytes bytes() const;
+    static std::optional<MeshBvh> from_bytes(const TreeBytes& bytes,
+                                             const std::shared_ptr<const void>& keeper);
 
     const Bounds3f& bounds() const { return bounds_; } // of triangles with an area; empty if there is none
     std::uint64_t degenerate_triangles() const { return degenerate_; }

@@ -1,5 +1,6 @@
 // PlainArray: a fixed number of plain values that nobody has set yet: for those that many threads are to fill,
-// each its own.
+// each its own. Or lent: somebody else's memory, a mapped file say, that is read as it stands; who writes to it
+// is a fault of ours.
 //
 // Cost  memory is touched by whoever fills it, not here. Large arrays ask for huge pages: fewer faults while they
 //       are filled, fewer misses of the TLB afterwards.
@@ -7,6 +8,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -28,10 +31,21 @@ public:
           allocated_(size)
     {
     }
-    ~PlainArray() { free_plain(values_, size_bytes()); }
+    static PlainArray lent(std::span<const T> values, std::shared_ptr<const void> keeper)
+    {
+        PlainArray array;
+        array.values_ = const_cast<T*>(values.data());
+        array.size_ = array.allocated_ = values.size();
+        array.keeper_ = std::move(keeper);
+        return array;
+    }
+    ~PlainArray()
+    {
+        if (!keeper_) free_plain(values_, size_bytes());
+    }
     PlainArray(PlainArray&& other) noexcept
         : values_(std::exchange(other.values_, nullptr)), size_(std::exchange(other.size_, 0)),
-          allocated_(std::exchange(other.allocated_, 0))
+          allocated_(std::exchange(other.allocated_, 0)), keeper_(std::move(other.keeper_))
     {
     }
     PlainArray& operator=(PlainArray&& other) noexcept
@@ -40,6 +54,7 @@ public:
         std::swap(values_, taken.values_);
         std::swap(size_, taken.size_);
         std::swap(allocated_, taken.allocated_);
+        std::swap(keeper_, taken.keeper_);
         return *this;
     }
     PlainArray(const PlainArray& other) : PlainArray(other.size())
@@ -66,6 +81,7 @@ public:
 private:
     T* values_ = nullptr;
     std::size_t size_ = 0, allocated_ = 0;
+    std::shared_ptr<const void> keeper_; // of lent memory
 };
 
 } // namespace renderer

@@ -102,4 +102,19 @@ std::uint64_t degenerate_triangles(const PreparedMesh& prepared)
     return std::visit([](const auto& search) { return search.degenerate_triangles(); }, prepared.search());
 }
 
+TreeBytes tree_bytes(const PreparedMesh& prepared)
+{
+    const MeshBvh* const bvh = bvh_of(prepared);
+    return bvh ? bvh->bytes() : TreeBytes();
+}
+
+std::shared_ptr<const PreparedMesh>
+prepared_from(Mesh mesh, const TreeBytes& tree, const std::shared_ptr<const void>& keeper)
+{
+    std::optional<MeshBvh> bvh = MeshBvh::from_bytes(tree, keeper);
+    if (!bvh) return nullptr;
+    return std::make_shared<const PreparedMesh>(
+        std::make_shared<const Mesh>(std::move(mesh)), std::move(*bvh), true);
+}
+
 } // namespace renderer

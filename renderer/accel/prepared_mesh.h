@@ -6,6 +6,7 @@
 // builder.
 #pragma once
 
+#include "renderer/accel/tree_bytes.h"
 #include "renderer/description/settings.h"
 #include "renderer/geometry/mesh.h"
 #include "renderer/parallel/thread_pool.h"
@@ -40,5 +41,13 @@ std::uint64_t size_bytes(
     const PreparedMesh& prepared); // all memory it holds: what a cache counts; a part: without the arrays
 std::uint64_t bvh_bytes(const PreparedMesh& prepared);            // nodes + leaves, without the vertices
 std::uint64_t degenerate_triangles(const PreparedMesh& prepared); // zero area: kept in the count, never hit
+
+// Of one that has a MeshBvh, else nothing; valid as long as `prepared` is.
+TreeBytes tree_bytes(const PreparedMesh& prepared);
+
+// What tree_bytes() was of. The arrays stay where they are, which `keeper` keeps. Nothing if the sizes do not
+// fit; that the bytes are what they were is for the caller to know.
+std::shared_ptr<const PreparedMesh>
+prepared_from(Mesh mesh, const TreeBytes& tree, const std::shared_ptr<const void>& keeper);
 
 } // namespace renderer

@@ -78,6 +78,11 @@ std::span<const LimitEntry> limit_table()
                    "bytes",
                    "prepared meshes kept in memory",
                    kMostBytes},
+        LimitEntry{"stored_mesh_bytes",
+                   &Limits::stored_mesh_bytes,
+                   "bytes",
+                   "prepared meshes kept on disk; 0: none",
+                   kMostBytes},
     };
     return table;
 }

@@ -31,6 +31,7 @@ struct Limits {
     std::uint64_t import_s = 30;
     std::uint64_t import_output_bytes = 512ull << 20;
     std::uint64_t mesh_cache_bytes = 2ull << 30;
+    std::uint64_t stored_mesh_bytes = 8ull << 30;
 
     // For a local render: nothing is refused but what cannot be.
     static Limits none();

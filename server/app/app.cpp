@@ -67,7 +67,7 @@ int run_service(const ServiceOptions& options, const StopSignals& signals, std::
     const DataFolder folder(options.data);
     const std::unique_ptr<Store> store = open_sqlite_store(folder.path() / "jobs.sqlite");
     BlobStore blobs(folder.path() / "blobs");
-    ImportService imports(import_program, blobs, options.limits, log);
+    ImportService imports(import_program, blobs, options.limits, log, folder.path() / "meshes");
     JobService jobs(*store, blobs, imports, {options.limits, options.threads, log});
     HttpServer http(jobs,
                     *store,

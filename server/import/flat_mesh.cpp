@@ -2,6 +2,7 @@
 
 #include "api/words/limit_words.h"
 #include "renderer/geometry/validate_mesh.h"
+#include "server/import/allowance.h"
 
 #include <array>
 #include <cstring>
@@ -186,14 +187,14 @@ bool is_exact(Head& head, std::uint64_t available)
     bool fits = head.text_bytes <= left && head.text_bytes <= kMostTextBytes;
     if (fits) left -= head.text_bytes;
     for_each_array(head, empty, [&](std::uint64_t& count, const auto& array) {
-        constexpr std::size_t kEach = sizeof(*array.data());
+        constexpr std::size_t kEach = sizeof(typename std::remove_reference_t<decltype(array)>::value_type);
         fits = fits && count <= left / kEach;
         if (fits) left -= count * kEach;
     });
     return fits && left == 0;
 }
 
-ImportOutcome read_mesh(Head head, std::span<const std::byte> bytes, const renderer::Limits& limits)
+ImportOutcome read_mesh(Head head, const MappedBytes& flat, const renderer::Limits& limits)
 {
     if (head.triangles > limits.triangles)
         return ImportFailure{"over_limit",
@@ -203,12 +204,13 @@ ImportOutcome read_mesh(Head head, std::span<const std::byte> bytes, const rende
     asset.mesh.origin = head.origin;
     std::size_t at = sizeof(Head);
     for_each_array(head, asset.mesh, [&](std::uint64_t count, auto& array) {
-        array.resize(count);
-        const std::size_t size = count * sizeof(*array.data());
-        if (size) std::memcpy(array.data(), bytes.data() + at, size);
-        at += size;
+        using Value = typename std::remove_reference_t<decltype(array)>::value_type;
+        // Every array begins at a multiple of its numbers' size: they are of 4 bytes, the last of 2.
+        const auto* values = reinterpret_cast<const Value*>(flat.bytes.data() + at);
+        if (count) array = renderer::Array<Value>::lent({values, count}, flat.keeper);
+        at += count * sizeof(Value);
     });
-    TextReader texts(bytes.subspan(at));
+    TextReader texts(flat.bytes.subspan(at));
     if (!texts.take(asset.format) || !texts.take(asset.notes) || !texts.take(asset.mesh.materials) ||
         !texts.take(asset.mesh.parts) || !texts.at_end())
         return unsound("its texts cannot be read");
@@ -242,7 +244,7 @@ ImportOutcome within_flat_bounds(ImportOutcome outcome, const renderer::Limits& 
                              "the mesh takes " + std::to_string(bytes) +
                                  " bytes when imported, the limit is " +
                                  std::to_string(limits.import_output_bytes) + " (" +
-                                 api::flag_of("import_output_bytes") + ")"};
+                                 allowance_words("import_output_bytes") + ")"};
     if (text_bytes > kMostTextBytes)
         return ImportFailure{"over_limit",
                              "names of parts, materials and textures take " + std::to_string(text_bytes) +
@@ -262,15 +264,16 @@ void write_flat(const ImportOutcome& outcome, const ByteSink& sink)
     sink(texts.bytes());
 }
 
-ImportOutcome read_flat(std::span<const std::byte> bytes, const renderer::Limits& limits)
+ImportOutcome read_flat(const MappedBytes& flat, const renderer::Limits& limits)
 {
+    const std::span<const std::byte> bytes = flat.bytes;
     Head head;
     if (bytes.size() < sizeof head) return unsound("it is too short");
     std::memcpy(&head, bytes.data(), sizeof head);
     if (head.magic != kMagic || head.version != kImporterVersion) return unsound("it is of another version");
     if (!is_exact(head, bytes.size())) return unsound("its size is not what it promises");
     if (head.kind == Kind::failure) return read_failure(head, bytes);
-    if (head.kind == Kind::mesh) return read_mesh(head, bytes, limits);
+    if (head.kind == Kind::mesh) return read_mesh(head, flat, limits);
     return unsound("its kind is unknown");
 }
 

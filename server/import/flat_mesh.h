@@ -2,15 +2,17 @@
 // the arrays as they stand in memory, then the texts. It never leaves the machine, so it has this machine's
 // byte order.
 //
+// Shared  the arrays of what read_flat() gives are lent: they stand where the bytes stand, and keep those.
 // Errors  read_flat() takes nothing on trust: sizes, counts, ranges, finiteness and UTF-8 are checked; bytes
 //         that are not just what write_flat() makes give a failure "import_crashed". They must not change
-//         meanwhile.
-// Cost    one copy of the arrays.
+//         meanwhile or afterwards.
+// Cost    a pass over the arrays, no copy.
 #pragma once
 
 #include "renderer/description/limits.h"
 #include "renderer/geometry/mesh.h"
 #include "server/import/import_failure.h"
+#include "server/import/mapped_bytes.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +30,7 @@ constexpr std::uint32_t kImporterVersion = 3;
 
 struct ImportedAsset {
     renderer::Mesh mesh;
-    std::string format; // "obj", "ply", "stl", "gltf", "glb"
+    std::string format; // its name in mesh_formats.h
     std::vector<std::string> notes;
 };
 
@@ -38,7 +40,7 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 // The outcome itself, or "over_limit" where its flat form would be refused for its size.
 ImportOutcome within_flat_bounds(ImportOutcome outcome, const renderer::Limits& limits);
 void write_flat(const ImportOutcome& outcome, const ByteSink& sink);
-ImportOutcome read_flat(std::span<const std::byte> bytes, const renderer::Limits& limits);
+ImportOutcome read_flat(const MappedBytes& flat, const renderer::Limits& limits);
 
 bool is_utf8(std::string_view text);
 

@@ -63,6 +63,7 @@ void ImportCache::store(KnownImport known)
         bytes_ -= bytes_of(*entry);
         for (std::size_t tree = 0; tree < known.prepared.size(); ++tree)
             if (!known.prepared[tree]) known.prepared[tree] = std::move(entry->prepared[tree]);
+        if (!known.facts) known.facts = std::move(entry->facts);
         *entry = std::move(known);
         entries_.splice(entries_.begin(), entries_, entry);
     } else {

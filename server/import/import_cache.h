@@ -10,6 +10,7 @@
 
 #include "api/job_view.h"
 #include "renderer/accel/prepared_mesh.h"
+#include "renderer/plan/plan.h"
 #include "server/import/import_failure.h"
 
 #include <array>
@@ -30,7 +31,8 @@ struct KnownImport {
     std::string main;     // digest and extension
     NamedDigests answers; // to what the importer asked
     std::optional<ImportFailure> failure;
-    std::optional<api::AssetInfo::MeshInfo> figures; // engaged unless it failed
+    std::optional<api::AssetInfo::MeshInfo> figures;  // engaged unless it failed
+    std::shared_ptr<const renderer::MeshFacts> facts; // once a mesh was prepared
     std::array<std::shared_ptr<const renderer::PreparedMesh>, renderer::kMeshTrees>
         prepared; // by tree; null where not (any more) in memory
 };

@@ -1,12 +1,13 @@
 #include "server/import/import_service.h"
 
 #include "api/words/digest.h"
+#include "renderer/description/mesh_formats.h"
 #include "server/import/import_cache.h"
+#include "server/import/mapped_bytes.h"
 #include "server/import/mesh_figures.h"
 #include "server/import/run_import.h"
+#include "server/import/stored_meshes.h"
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <condition_variable>
@@ -30,8 +31,7 @@ std::string extension_of(const std::string& name)
     std::string extension = std::filesystem::path(name).extension().string();
     for (char& c : extension)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    static constexpr std::array<std::string_view, 5> kKnown{".obj", ".ply", ".stl", ".gltf", ".glb"};
-    return std::find(kKnown.begin(), kKnown.end(), extension) == kKnown.end() ? std::string() : extension;
+    return renderer::is_mesh_extension(extension) ? extension : std::string();
 }
 
 std::string main_key(const ImportRequest& request)
@@ -55,6 +55,13 @@ api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const Kno
     return info;
 }
 
+// Of what cannot be read: of nothing, so that a file made beside it is told from one made beside something.
+std::string digest_of_file(const std::filesystem::path& path)
+{
+    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    return digest_of(file ? map_file(file.get()).bytes : std::span<const std::byte>());
+}
+
 ImportFailure out_of_memory()
 {
     return {"import_out_of_memory",
@@ -67,10 +74,18 @@ struct ImportService::State {
     State(std::filesystem::path program_path,
           BlobStore& store,
           const renderer::Limits& bounds,
-          const Log& log_to)
+          const Log& log_to,
+          const std::filesystem::path& kept)
         : program(std::move(program_path)), blobs(store), limits(bounds), log(log_to),
           cache(bounds.mesh_cache_bytes)
     {
+        if (kept.empty()) return;
+        stored.emplace(
+            kept,
+            bounds.stored_mesh_bytes,
+            digest_of_file("/proc/self/exe") + digest_of_file(program),
+            [&store](const std::string& digest) { return store.has(kAsset, digest); },
+            log);
     }
 
     // Holds the right to import one main file, and one of the places of a child.
@@ -122,13 +137,34 @@ struct ImportService::State {
         return FileDescriptor(fd);
     }
 
+    // Whether the bytes are what the digest says, without holding them; false if they are there no more.
+    bool is_sound(const FileDescriptor& file, const std::string& digest)
+    {
+        const MappedBytes mapped = map_file(file.get());
+        if (digest_of(mapped.bytes) != digest)
+            return blobs.read(kAsset, digest).has_value(); // which tells and marks the damage
+        blobs.touch(kAsset, digest);
+        return true;
+    }
+
+    // Of all the files that an import may open.
+    std::uint64_t bytes_of(const ImportRequest& request) const
+    {
+        std::set<std::string_view> digests{request.digest};
+        for (const auto& [name, digest] : request.files)
+            digests.insert(digest);
+        std::uint64_t bytes = 0;
+        for (const std::string_view digest : digests)
+            bytes += blobs.size(kAsset, digest).value_or(0);
+        return bytes;
+    }
+
     // A file of the job by the name that the mesh uses; what was answered is part of the cache's key.
     FileDescriptor open_companion(const ImportRequest& request, std::string_view name, NamedDigests& answers)
     {
         const auto file = request.files.find(std::string(name));
-        const bool there =
-            file != request.files.end() && blobs.read(kAsset, file->second).has_value(); // verified
-        FileDescriptor fd = there ? open_asset(file->second) : FileDescriptor();
+        FileDescriptor fd = file == request.files.end() ? FileDescriptor() : open_asset(file->second);
+        if (fd && !is_sound(fd, file->second)) fd.reset();
         answers[std::string(name)] = fd ? file->second : "";
         return fd;
     }
@@ -143,15 +179,15 @@ struct ImportService::State {
             return ImportFailure{"missing_asset",
                                  request.digest + " is not uploaded: PUT /v1/assets/" + request.digest};
         // The child starts reading at once; its answer counts only if the bytes are what the digest says.
-        auto verified =
-            std::async(std::launch::async, [&] { return blobs.read(kAsset, request.digest).has_value(); });
+        auto verified = std::async(std::launch::async, [&] { return is_sound(file, request.digest); });
         imports_run.fetch_add(1);
         ImportRunEnd end =
             run_import({program,
                         file.get(),
                         extension_of(request.name),
                         [&](std::string_view name) { return open_companion(request, name, answers); },
-                        limits},
+                        limits,
+                        bytes_of(request)},
                        std::move(stop));
         if (!verified.get())
             return ImportFailure{"missing_asset", request.digest + " was removed while it was imported"};
@@ -172,6 +208,19 @@ struct ImportService::State {
         return ImportFailure{"asset_damaged", api::damaged_asset_words(damage.digest)};
     }
 
+    // From the disk into the cache, if it was kept there.
+    std::optional<PreparedAsset> load(const ImportRequest& request, renderer::ThreadPool& pool)
+    {
+        if (!stored) return std::nullopt;
+        auto known = stored->load(main_key(request), request.files, request.tree, pool);
+        if (!known) return std::nullopt;
+        const auto& mesh = known->prepared[static_cast<std::size_t>(request.tree)];
+        known->facts = std::make_shared<const renderer::MeshFacts>(renderer::facts_of(mesh_of(*mesh)));
+        PreparedAsset prepared{mesh, known->figures->notes, known->facts};
+        remember(std::move(*known));
+        return prepared;
+    }
+
     void remember(KnownImport known)
     {
         const std::lock_guard lock(mutex);
@@ -186,15 +235,17 @@ struct ImportService::State {
     std::atomic<std::uint64_t> imports_run{0};
     mutable std::mutex mutex;
     std::condition_variable_any changed;
-    ImportCache cache;               // under mutex
+    ImportCache cache; // under mutex
+    std::optional<StoredMeshes> stored;
     std::set<std::string> in_flight; // under mutex: main keys
 };
 
 ImportService::ImportService(std::filesystem::path program,
                              BlobStore& blobs,
                              const renderer::Limits& limits,
-                             const Log& log)
-    : state_(std::make_unique<State>(std::move(program), blobs, limits, log))
+                             const Log& log,
+                             const std::filesystem::path& kept)
+    : state_(std::make_unique<State>(std::move(program), blobs, limits, log, kept))
 {
 }
 
@@ -207,7 +258,8 @@ try {
     const auto tree = static_cast<std::size_t>(request.tree);
     const auto answer = [&](const KnownImport& known) -> std::optional<Answer> {
         if (known.failure) return *known.failure;
-        if (known.prepared[tree]) return PreparedAsset{known.prepared[tree], known.figures->notes};
+        if (known.prepared[tree])
+            return PreparedAsset{known.prepared[tree], known.figures->notes, known.facts};
         return std::nullopt;
     };
     bool stopped = false;
@@ -215,7 +267,9 @@ try {
     if (stopped) return PreparedAsset{};
     const State::Flight flight(*state_, main_key(request));
 
-    KnownImport known{main_key(request), {}, {}, {}, {}};
+    if (auto kept = state_->load(request, pool)) return std::move(*kept);
+
+    KnownImport known{main_key(request), {}, {}, {}, {}, {}};
     bool repeatable = false;
     State::Imported imported = state_->import(request, known.answers, repeatable, stop);
     if (auto* failure = std::get_if<ImportFailure>(&imported)) {
@@ -226,9 +280,11 @@ try {
     auto* asset = std::get_if<ImportedAsset>(&imported);
     if (!asset) return PreparedAsset{};
     known.figures = mesh_figures(*asset);
-    PreparedAsset prepared{prepare_mesh(std::move(asset->mesh), request.tree, pool, stop),
-                           known.figures->notes};
+    known.facts = std::make_shared<const renderer::MeshFacts>(renderer::facts_of(asset->mesh));
+    PreparedAsset prepared{
+        prepare_mesh(std::move(asset->mesh), request.tree, pool, stop), known.figures->notes, known.facts};
     known.prepared[tree] = prepared.mesh;
+    if (state_->stored && prepared.mesh) state_->stored->keep(known, request.tree);
     state_->remember(std::move(known));
     return prepared;
 } catch (const std::bad_alloc&) {
@@ -250,7 +306,7 @@ std::optional<api::AssetInfo> ImportService::info(const std::string& digest, con
         return info_of(digest, bytes, known);
     };
     const ImportRequest request = bare_request(digest);
-    KnownImport known{main_key(request), {}, {}, {}, {}};
+    KnownImport known{main_key(request), {}, {}, {}, {}, {}};
     try {
         bool stopped = false;
         if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return found;
@@ -286,6 +342,16 @@ std::uint64_t ImportService::cached_bytes() const
 {
     const std::lock_guard lock(state_->mutex);
     return state_->cache.bytes();
+}
+
+std::uint64_t ImportService::stored_bytes() const
+{
+    return state_->stored ? state_->stored->bytes() : 0;
+}
+
+void ImportService::flush()
+{
+    if (state_->stored) state_->stored->flush();
 }
 
 std::uint64_t ImportService::imports_run() const

@@ -1,6 +1,6 @@
 // ImportService: from an uploaded blob to a prepared mesh, once per content. Imports run in
 // heliograph-import, a child process under rlimits, no_new_privs and a deadline, whose output is validated as
-// hostile. Prepared meshes are kept in memory, least recently used first out, by bytes.
+// hostile. Prepared meshes are kept in memory and on disk, least recently used first out, by bytes.
 //
 // Key      digest and extension of the main file, digests of every file that it asked for (or that there was
 //          none), tree. Failures that would come again are remembered too; time and memory
@@ -16,6 +16,7 @@
 #include "renderer/accel/prepared_mesh.h"
 #include "renderer/description/limits.h"
 #include "renderer/parallel/thread_pool.h"
+#include "renderer/plan/plan.h"
 #include "server/import/import_failure.h"
 #include "server/log/log.h"
 #include "server/store/blob_store.h"
@@ -34,6 +35,7 @@ namespace server {
 struct PreparedAsset {
     std::shared_ptr<const renderer::PreparedMesh> mesh;
     std::vector<std::string> notes; // from the importer
+    std::shared_ptr<const renderer::MeshFacts> facts;
 };
 
 struct ImportRequest {
@@ -45,11 +47,13 @@ struct ImportRequest {
 
 class ImportService {
 public:
-    // `program`: path of heliograph-import.
+    // `program`: path of heliograph-import. `kept`: folder where prepared meshes are kept on disk (see
+    // stored_meshes.h); none if it is empty.
     ImportService(std::filesystem::path program,
                   BlobStore& blobs,
                   const renderer::Limits& limits,
-                  const Log& log);
+                  const Log& log,
+                  const std::filesystem::path& kept = {});
     ~ImportService();
     ImportService(const ImportService&) = delete;
     ImportService& operator=(const ImportService&) = delete;
@@ -66,7 +70,9 @@ public:
     std::optional<api::AssetInfo> known_info(const std::string& digest) const;
 
     std::uint64_t cached_bytes() const;
-    std::uint64_t imports_run() const; // child processes started so far
+    std::uint64_t stored_bytes() const; // on disk
+    void flush();                       // until what is to be kept on disk is there: for tests
+    std::uint64_t imports_run() const;  // child processes started so far
 
 private:
     struct State;

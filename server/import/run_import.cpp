@@ -1,8 +1,10 @@
 #include "server/import/run_import.h"
 
 #include "api/words/limit_words.h"
+#include "server/import/allowance.h"
 #include "server/import/child_process.h"
 #include "server/import/file_desk.h"
+#include "server/import/mapped_bytes.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +15,6 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -32,9 +33,8 @@ FileDescriptor checked(int fd, const char* what)
     return FileDescriptor(fd);
 }
 
-std::vector<std::string> arguments_of(const ImportRun& run)
+std::vector<std::string> arguments_of(const ImportRun& run, const renderer::Limits& limits)
 {
-    const renderer::Limits& limits = run.limits;
     return {"mesh" + run.extension,
             std::to_string(limits.triangles),
             std::to_string(limits.import_memory_bytes),
@@ -43,38 +43,16 @@ std::vector<std::string> arguments_of(const ImportRun& run)
 }
 
 // The finished output, which nobody can change any more: a grandchild that still could makes sealing fail.
-class SealedOutput {
-public:
-    explicit SealedOutput(int fd)
-    {
-        struct stat state {};
-        if (::fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0 ||
-            ::fstat(fd, &state) != 0)
-            return;
-        size_ = static_cast<std::size_t>(state.st_size);
-        if (size_) data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, fd, 0);
-    }
-    ~SealedOutput()
-    {
-        if (data_ != MAP_FAILED) ::munmap(data_, size_);
-    }
-    SealedOutput(const SealedOutput&) = delete;
-    SealedOutput& operator=(const SealedOutput&) = delete;
-    std::span<const std::byte> bytes() const
-    {
-        if (data_ == MAP_FAILED) return {};
-        return {static_cast<const std::byte*>(data_), size_};
-    }
-
-private:
-    void* data_ = MAP_FAILED;
-    std::size_t size_ = 0;
-};
+MappedBytes sealed(int output)
+{
+    if (::fcntl(output, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0) return {};
+    return map_file(output);
+}
 
 class Run {
 public:
     Run(const ImportRun& run, std::stop_token stop)
-        : run_(run), stop_(std::move(stop)),
+        : run_(run), allowed_(allowance(run.limits, run.bytes)), stop_(std::move(stop)),
           stop_event_(checked(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK), "eventfd")),
           output_(
               checked(::memfd_create("heliograph-import", MFD_CLOEXEC | MFD_ALLOW_SEALING), "memfd_create")),
@@ -90,7 +68,7 @@ public:
     ImportRunEnd go()
     {
         ChildProcess child(run_.program,
-                           arguments_of(run_),
+                           arguments_of(run_, allowed_),
                            std::array{log_write_.get(), run_.file, output_.get(), desk_.second.get()});
         log_write_.reset();
         desk_.second.reset();
@@ -154,25 +132,35 @@ private:
                     api::flag_of("import_s") + "); simplify or split the mesh"};
     }
 
+    ImportFailure out_of_time()
+    {
+        if (allowed_.import_s == run_.limits.import_s) return late();
+        result_.repeatable = false;
+        return {"import_timeout",
+                "the import took " + std::to_string(allowed_.import_s) +
+                    " s of processor time, more than a file of this size should (10 s + 1 s a MiB); "
+                    "simplify or split the mesh"};
+    }
+
     ImportFailure out_of_memory()
     {
         result_.repeatable = false;
         return {"import_out_of_memory",
-                "the import needs more than " + std::to_string(run_.limits.import_memory_bytes) +
-                    " bytes of memory (" + api::flag_of("import_memory_bytes") +
+                "the import needs more than " + std::to_string(allowed_.import_memory_bytes) +
+                    " bytes of memory (" + allowance_words("import_memory_bytes") +
                     "); simplify or split the mesh"};
     }
 
     ImportOutcome outcome_of(const ChildProcess::End& end)
     {
-        if (end.signal == SIGXCPU) return late();
+        if (end.signal == SIGXCPU) return out_of_time();
         if (end.signal == SIGKILL)
             return out_of_memory(); // not by us: the kernel's choice when memory is short
         if (end.signal == SIGXFSZ)
             return ImportFailure{"over_limit",
                                  "the imported form takes more than " +
-                                     std::to_string(run_.limits.import_output_bytes) + " bytes (" +
-                                     api::flag_of("import_output_bytes") + ")"};
+                                     std::to_string(allowed_.import_output_bytes) + " bytes (" +
+                                     allowance_words("import_output_bytes") + ")"};
         if (end.signal)
             return ImportFailure{"import_crashed",
                                  "the importer crashed on this file (signal " + std::to_string(end.signal) +
@@ -185,14 +173,14 @@ private:
         if (end.exit_code != 0)
             return ImportFailure{"import_crashed",
                                  "the importer gave up with exit code " + std::to_string(end.exit_code)};
-        const SealedOutput output(output_.get());
-        ImportOutcome outcome = read_flat(output.bytes(), run_.limits);
+        ImportOutcome outcome = read_flat(sealed(output_.get()), run_.limits);
         const auto* failure = std::get_if<ImportFailure>(&outcome);
         if (failure && failure->code == "import_out_of_memory") return out_of_memory();
         return outcome;
     }
 
     const ImportRun& run_;
+    const renderer::Limits allowed_;
     std::stop_token stop_;
     FileDescriptor stop_event_, output_;
     std::pair<FileDescriptor, FileDescriptor> desk_;

@@ -25,6 +25,7 @@ struct ImportRun {
     std::function<FileDescriptor(std::string_view name)>
         open; // companion files; called on the calling thread
     renderer::Limits limits;
+    std::uint64_t bytes = 0; // of all the files that it may open: what it may use grows with them
 };
 
 struct ImportRunEnd {

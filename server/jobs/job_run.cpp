@@ -62,7 +62,7 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
         }
         auto& asset = std::get<PreparedAsset>(answer);
         if (!asset.mesh) return StoppedRun{};
-        imported.facts.push_back(renderer::facts_of(renderer::mesh_of(*asset.mesh)));
+        imported.facts.push_back(*asset.facts);
         imported.meshes.push_back(std::move(asset.mesh));
         add_notes(scene.meshes[i].name, asset.notes, imported);
         renderer::add_mesh(budget, imported.facts.back());

@@ -8,6 +8,7 @@ class App;
 namespace bench {
 
 void add_evaluation(CLI::App& app);
+void add_import(CLI::App& app);
 void add_leaks(CLI::App& app);
 void add_memory(CLI::App& app);
 void add_rays(CLI::App& app);

@@ -92,7 +92,8 @@ private:
 // What all modes share: the mesh, the device for tracing, and one tree a quality.
 class Trees {
 public:
-    explicit Trees(const renderer::Mesh& mesh) : mesh_(mesh), positions_(mesh.positions)
+    explicit Trees(const renderer::Mesh& mesh)
+        : mesh_(mesh), positions_(mesh.positions.begin(), mesh.positions.end())
     {
         positions_.emplace_back(); // Embree reads 16 bytes a vertex
     }

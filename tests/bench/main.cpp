@@ -10,6 +10,7 @@ int main(int argc, char** argv)
     CLI::App app{"Measures Heliograph beside a peer or a baseline in the same run.", "heliograph-bench"};
     app.require_subcommand(1);
     bench::add_evaluation(app);
+    bench::add_import(app);
     bench::add_leaks(app);
     bench::add_memory(app);
     bench::add_rays(app);

@@ -3,7 +3,9 @@
 // overhead POST to picture of a 64x64 scene whose mesh is known, less the seconds that its report says were
 // spent preparing and rendering; beside it one fdatasync of 4 KiB in the same folder, measured in turn.
 // submissions accepted a second from 64 clients. status GET of a job's status while every core renders,
-// median and 99th percentile. memory resident, right after start, and after all of this.
+// median and 99th percentile. first tile (--first-tile MESH) from POST of a job on a mesh that is prepared to the
+// picture of one 16x16 tile of it, one sample a pixel; beside it what the report says preparing and rendering
+// took, and the same once the service was started anew. memory resident, right after start, and after all of this.
 #include "tests/bench/child_service.h"
 #include "tests/bench/commands.h"
 
@@ -16,7 +18,9 @@
 #include <chrono>
 #include <cstdio>
 #include <fcntl.h>
+#include <fstream>
 #include <iostream>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <unistd.h>
@@ -148,6 +152,95 @@ json measure_status(const ChildService& service, const std::string& mesh, int re
     return {{"median_ms", quantile(times, 0.5)}, {"p99_ms", quantile(times, 0.99)}, {"repeats", repeats}};
 }
 
+// One tile in the middle of a large picture.
+std::string tile_text(const std::string& mesh_digest, int seed)
+{
+    json job = json::parse(job_text(mesh_digest, 1024, 1, seed));
+    job["image"]["region"] = {{"x", 504}, {"y", 504}, {"width", 16}, {"height", 16}};
+    return job.dump();
+}
+
+struct TileTimes {
+    std::vector<double> total, prepare, render;
+};
+
+void measure_tile(httplib::Client& client, const std::string& mesh, int seed, TileTimes& times)
+{
+    const std::string body = tile_text(mesh, seed);
+    const Clock::time_point start = Clock::now();
+    const httplib::Result answer =
+        client.Post("/v1/jobs", {{"Prefer", "wait=60"}, {"Accept", "image/png"}}, body, "application/json");
+    times.total.push_back(ms_since(start));
+    const std::string link = checked(answer, 200).get_header_value("Link");
+    const std::string path = link.substr(link.find('/'), link.find('>') - link.find('/'));
+    const json timing = json::parse(checked(client.Get(path), 200).body).at("timing");
+    times.prepare.push_back(1000 * timing.at("prepare_s").get<double>());
+    times.render.push_back(1000 * timing.at("render_s").get<double>());
+}
+
+std::string bytes_of(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream bytes;
+    if (!(bytes << file.rdbuf())) throw std::runtime_error("cannot read " + path);
+    return std::move(bytes).str();
+}
+
+void run_first_tile(const std::string& path, bool as_json)
+{
+    constexpr int kRepeats = 41;
+    const ChildService service({"--limit-asset-bytes",
+                                "4000000000",
+                                "--limit-import-memory-bytes",
+                                "16000000000",
+                                "--limit-import-output-bytes",
+                                "4000000000",
+                                "--limit-import-s",
+                                "600"});
+    httplib::Client client(service.url());
+    client.set_keep_alive(true);
+    client.set_tcp_nodelay(true);
+    client.set_read_timeout(600);
+    TileTimes cold, warm;
+    const Clock::time_point start = Clock::now();
+    const std::string mesh =
+        json::parse(checked(client.Post("/v1/assets", bytes_of(path), "application/octet-stream"), 201).body)
+            .at("digest")
+            .get<std::string>();
+    const double upload_ms = ms_since(start);
+    measure_tile(client, mesh, 0, cold);
+    const double whole_ms = ms_since(start);
+    for (int i = 1; i <= kRepeats; ++i)
+        measure_tile(client, mesh, i, warm);
+    const json figures{{"mesh", path},
+                       {"upload_ms", upload_ms},
+                       {"upload_to_first_tile_ms", whole_ms},
+                       {"import_and_tree_ms", cold.prepare[0]},
+                       {"first_tile_ms", quantile(warm.total, 0.5)},
+                       {"first_tile_least_ms", quantile(warm.total, 0)},
+                       {"prepare_ms", quantile(warm.prepare, 0.5)},
+                       {"render_ms", quantile(warm.render, 0.5)},
+                       {"fdatasync_ms", fdatasync_ms(service.folder())},
+                       {"peak_mib", service.peak_mib()}};
+    if (as_json) {
+        std::cout << figures.dump(2) << "\n";
+        return;
+    }
+    std::printf("%s: upload %.0f ms, to the first tile %.0f ms, of that import and tree %.0f ms\n",
+                path.c_str(),
+                upload_ms,
+                whole_ms,
+                cold.prepare[0]);
+    std::printf("first tile of a prepared mesh: %.2f ms, least %.2f (preparing %.2f, rendering %.2f, one "
+                "fdatasync %.2f)"
+                "   goal: 20 ms\n",
+                quantile(warm.total, 0.5),
+                quantile(warm.total, 0),
+                quantile(warm.prepare, 0.5),
+                quantile(warm.render, 0.5),
+                figures["fdatasync_ms"].get<double>());
+}
+
 void run(bool as_json)
 {
     const ChildService service({"--limit-queue-jobs", "1000000"});
@@ -156,7 +249,8 @@ void run(bool as_json)
     httplib::Client client(service.url());
     const std::string mesh =
         json::parse(checked(client.Post("/v1/assets", kTetrahedron, "application/octet-stream"), 201).body)
-            .at("digest");
+            .at("digest")
+            .get<std::string>();
     checked(client.Post("/v1/jobs", {{"Prefer", "wait=30"}}, job_text(mesh, 64, 1, 999), "application/json"),
             200);
     figures["job"] = measure_overhead(service, mesh, 101);
@@ -197,7 +291,10 @@ void add_service(CLI::App& app)
         app.add_subcommand("service", "what the service costs beyond the render itself");
     const auto as_json = std::make_shared<bool>(false);
     command->add_flag("--json", *as_json, "figures as JSON");
-    command->callback([as_json] { run(*as_json); });
+    const auto mesh = std::make_shared<std::string>();
+    command->add_option("--first-tile", *mesh, "only: time to the first tile of this mesh")
+        ->check(CLI::ExistingFile);
+    command->callback([=] { mesh->empty() ? run(*as_json) : run_first_tile(*mesh, *as_json); });
 }
 
 } // namespace bench

@@ -4,6 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <vector>
+
 namespace {
 
 using namespace renderer;
@@ -54,6 +60,52 @@ TEST(PreparedMesh, OfAPartHitsThatPartAlone)
         }
         EXPECT_GT(hits, 100);
     }
+}
+
+// What is kept on disk: the same answers, to the last bit.
+TEST(PreparedMesh, ComesBackFromItsBytesAsItWas)
+{
+    ThreadPool pool(2);
+    Random random(5);
+    Mesh mesh = random_scenes::soup(random, 500, 1, 0.4);
+    mesh.triangles.push_back({0, 0, 1});
+    const auto first = prepare_mesh(mesh, MeshTree::wide_sah, pool);
+    const TreeBytes bytes = tree_bytes(*first);
+    // Elsewhere in memory, as a mapped file would have them.
+    struct alignas(TreeBytes::kAlignment) Line {
+        std::byte bytes[TreeBytes::kAlignment];
+    };
+    const auto keeper = std::make_shared<std::vector<std::vector<Line>>>();
+    TreeBytes copy{bytes.head, {}};
+    for (const auto array : bytes.arrays) {
+        std::vector<Line>& lines = keeper->emplace_back(array.size() / sizeof(Line) + 1);
+        std::memcpy(lines.data(), array.data(), array.size());
+        copy.arrays.push_back(std::as_bytes(std::span(lines)).first(array.size()));
+    }
+    const auto second = prepared_from(mesh, copy, keeper);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(bvh_bytes(*second), bvh_bytes(*first));
+    EXPECT_EQ(degenerate_triangles(*second), 1u);
+    EXPECT_EQ(bvh_of(*second)->bounds().lower, bvh_of(*first)->bounds().lower);
+    EXPECT_EQ(bvh_of(*second)->depth(), bvh_of(*first)->depth());
+    int hits = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3d origin = random.direction() * 4.0;
+        const Ray ray{origin, random.in_box({-1, -1, -1}, {1, 1, 1}) - origin};
+        const auto hit = bvh_of(*second)->closest_hit(ray), other = bvh_of(*first)->closest_hit(ray);
+        ASSERT_EQ(hit.has_value(), other.has_value());
+        if (!hit) continue;
+        ++hits;
+        ASSERT_EQ(hit->primitive, other->primitive);
+        ASSERT_EQ(hit->t, other->t);
+    }
+    EXPECT_GT(hits, 100);
+
+    copy.arrays[0] = copy.arrays[0].first(copy.arrays[0].size() - 1);
+    EXPECT_FALSE(prepared_from(mesh, copy, keeper));
+    copy = bytes;
+    copy.head.pop_back();
+    EXPECT_FALSE(prepared_from(mesh, copy, keeper));
 }
 
 TEST(PreparedMesh, IsNotMadeOnceStopIsRequested)

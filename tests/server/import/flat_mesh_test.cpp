@@ -41,6 +41,13 @@ Bytes written(const ImportOutcome& outcome)
     return bytes;
 }
 
+// As a mapping would hold them.
+server::MappedBytes mapped(const Bytes& bytes)
+{
+    const auto kept = std::make_shared<const Bytes>(bytes);
+    return {*kept, kept};
+}
+
 std::string code_of(const ImportOutcome& outcome)
 {
     const auto* failure = std::get_if<ImportFailure>(&outcome);
@@ -57,7 +64,7 @@ Bytes with_count(Bytes bytes, std::size_t offset, std::uint64_t count)
 
 TEST(FlatMesh, GivesBackWhatWasWritten)
 {
-    const ImportOutcome back = server::read_flat(written(tetrahedron()), {});
+    const ImportOutcome back = server::read_flat(mapped(written(tetrahedron())), {});
     ASSERT_EQ(code_of(back), "ok");
     const auto& asset = std::get<ImportedAsset>(back);
     const ImportedAsset before = tetrahedron();
@@ -84,17 +91,20 @@ TEST(FlatMesh, GivesBackWhatWasWritten)
     EXPECT_EQ(asset.mesh.parts[1].triangle_count, 3u);
 
     const ImportFailure failure{"truncated", "line 7: the file ends"};
-    EXPECT_EQ(std::get<ImportFailure>(server::read_flat(written(failure), {})), failure);
+    EXPECT_EQ(std::get<ImportFailure>(server::read_flat(mapped(written(failure)), {})), failure);
 }
 
 TEST(FlatMesh, RefusesEveryTruncationAndEveryTail)
 {
     for (const Bytes& whole : {written(tetrahedron()), written(ImportFailure{"malformed", "why"})}) {
         for (std::size_t size = 0; size < whole.size(); ++size)
-            ASSERT_EQ(code_of(server::read_flat(std::span(whole).first(size), {})), "import_crashed") << size;
+            ASSERT_EQ(code_of(server::read_flat(
+                          mapped({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}), {})),
+                      "import_crashed")
+                << size;
         Bytes longer = whole;
         longer.push_back(std::byte{0});
-        EXPECT_EQ(code_of(server::read_flat(longer, {})), "import_crashed");
+        EXPECT_EQ(code_of(server::read_flat(mapped(longer), {})), "import_crashed");
     }
 }
 
@@ -104,7 +114,7 @@ TEST(FlatMesh, GivesASoundMeshOrAFailureWhateverBitsAreFlipped)
     for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
         Bytes bytes = whole;
         bytes[bit / 8] ^= std::byte(1u << (bit % 8));
-        const ImportOutcome outcome = server::read_flat(bytes, {});
+        const ImportOutcome outcome = server::read_flat(mapped(bytes), {});
         if (const auto* asset = std::get_if<ImportedAsset>(&outcome)) {
             ASSERT_FALSE(renderer::validate_mesh(asset->mesh)) << bit;
             for (const std::string& note : asset->notes)
@@ -126,7 +136,7 @@ TEST(FlatMesh, SurvivesRandomBytes)
         Bytes bytes = whole;
         for (std::uint64_t edits = 1 + random() % 8; edits-- > 0;)
             bytes[random() % bytes.size()] = std::byte(random() & 0xff);
-        const ImportOutcome outcome = server::read_flat(bytes, {});
+        const ImportOutcome outcome = server::read_flat(mapped(bytes), {});
         if (const auto* asset = std::get_if<ImportedAsset>(&outcome)) {
             ASSERT_FALSE(renderer::validate_mesh(asset->mesh));
         }
@@ -139,7 +149,8 @@ TEST(FlatMesh, RefusesCountsThatOverflow)
     for (std::size_t offset = 16; offset < 72; offset += 8)
         for (const std::uint64_t count :
              {~0ull, 1ull << 63, (1ull << 62) + 1, 0x1555555555555556ull, 1ull << 32})
-            ASSERT_EQ(code_of(server::read_flat(with_count(whole, offset, count), {})), "import_crashed")
+            ASSERT_EQ(code_of(server::read_flat(mapped(with_count(whole, offset, count)), {})),
+                      "import_crashed")
                 << offset;
 }
 
@@ -147,7 +158,7 @@ TEST(FlatMesh, KeepsTheTriangleLimitItself)
 {
     renderer::Limits limits;
     limits.triangles = 3;
-    EXPECT_EQ(code_of(server::read_flat(written(tetrahedron()), limits)), "over_limit");
+    EXPECT_EQ(code_of(server::read_flat(mapped(written(tetrahedron())), limits)), "over_limit");
 }
 
 TEST(FlatMesh, RefusesTextsThatAreNotUtf8)
@@ -156,7 +167,7 @@ TEST(FlatMesh, RefusesTextsThatAreNotUtf8)
         EXPECT_FALSE(server::is_utf8(text));
         ImportedAsset asset = tetrahedron();
         asset.mesh.materials[1].name = text;
-        EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+        EXPECT_EQ(code_of(server::read_flat(mapped(written(asset)), {})), "import_crashed");
     }
     for (const char* text : {"", "a", "\xc3\xb6", "\xe2\x82\xac", "\xf0\x9f\x8c\x9e"})
         EXPECT_TRUE(server::is_utf8(text));
@@ -166,13 +177,13 @@ TEST(FlatMesh, RefusesMeshesThatTheRendererWouldNotTake)
 {
     ImportedAsset asset = tetrahedron();
     asset.mesh.triangles[2][1] = 4;
-    EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+    EXPECT_EQ(code_of(server::read_flat(mapped(written(asset)), {})), "import_crashed");
     asset = tetrahedron();
     asset.mesh.parts[1].triangle_count = 4;
-    EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+    EXPECT_EQ(code_of(server::read_flat(mapped(written(asset)), {})), "import_crashed");
     asset = tetrahedron();
     asset.mesh.positions[0].x = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_EQ(code_of(server::read_flat(written(asset), {})), "import_crashed");
+    EXPECT_EQ(code_of(server::read_flat(mapped(written(asset)), {})), "import_crashed");
 }
 
 TEST(FlatMesh, TellsWhatIsTooLargeBeforeItIsWritten)

@@ -18,7 +18,7 @@ std::shared_ptr<const renderer::PreparedMesh> prepared(std::size_t triangles = 1
 
 KnownImport known(const std::string& main, const server::NamedDigests& answers = {}, bool with_mesh = true)
 {
-    KnownImport entry{main, answers, {}, api::AssetInfo::MeshInfo{}, {}};
+    KnownImport entry{main, answers, {}, api::AssetInfo::MeshInfo{}, {}, {}};
     if (with_mesh) entry.prepared[0] = prepared();
     return entry;
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <fcntl.h>
 #include <filesystem>
 #include <map>
@@ -43,7 +44,7 @@ protected:
             return FileDescriptor(
                 ::open(folder_.write("companion", companion->second).c_str(), O_RDONLY | O_CLOEXEC));
         };
-        return server::run_import({program_, main.get(), extension, open, limits_}, stop);
+        return server::run_import({program_, main.get(), extension, open, limits_, bytes_}, stop);
     }
 
     std::string code(const server::ImportRunEnd& end) const
@@ -63,6 +64,7 @@ protected:
     tests::TempFolder folder_;
     fs::path program_ = kImporter;
     renderer::Limits limits_;
+    std::uint64_t bytes_ = 1ull << 40; // so that the limits alone bound the child
     std::map<std::string, std::string> companions_;
     std::vector<std::string> asked_;
 };
@@ -84,8 +86,17 @@ TEST_F(RunImport, ImportsAMeshWithTheFilesThatItNames)
 
 TEST_F(RunImport, ReadsTheSameKnotFromEveryFormat)
 {
-    for (const std::string name :
-         {"knot.obj", "knot.ply", "knot_ascii.ply", "knot.stl", "knot_ascii.stl", "knot.glb", "knot.gltf"}) {
+    for (const std::string name : {"knot.obj",
+                                   "knot.ply",
+                                   "knot_ascii.ply",
+                                   "knot.stl",
+                                   "knot_ascii.stl",
+                                   "knot.glb",
+                                   "knot.gltf",
+                                   "knot.fbx",
+                                   "knot.dae",
+                                   "knot.3ds",
+                                   "knot.off"}) {
         companions_["knot.bin"] = tests::bytes_of(fs::path(tests::asset_dir()) / "knot.bin");
         const auto end = run(tests::bytes_of(fs::path(tests::asset_dir()) / name));
         ASSERT_EQ(code(end), "ok") << name;
@@ -134,12 +145,27 @@ TEST_F(RunImport, StopsAnImportThatTakesTooMuchMemory)
         obj += "v 1 2 3\n";
     for (int i = 0; i < 2'000'000; ++i)
         obj += "f 1 2 3\n";
-    limits_.import_memory_bytes = 128u << 20;
+    limits_.import_memory_bytes = 64u << 20;
     const auto end = run(obj, ".obj");
     EXPECT_EQ(code(end), "import_out_of_memory");
     EXPECT_FALSE(end.repeatable);
     EXPECT_THAT(std::get<ImportFailure>(*end.outcome).detail,
                 testing::HasSubstr("--limit-import-memory-bytes"));
+}
+
+TEST_F(RunImport, GivesAChildNoMoreThanItsFilesJustify)
+{
+    bytes_ = 1u << 20;
+    misbehave("echo $2 $3 $4 $5 >&2; exit 7");
+    EXPECT_EQ(run(kTriangle).log, "50000000 281018368 281018368 11\n");
+}
+
+TEST_F(RunImport, HandsAMeshOverWithoutACopy)
+{
+    const auto end = run(tests::bytes_of(fs::path(tests::asset_dir()) / "knot.ply"));
+    ASSERT_EQ(code(end), "ok");
+    const renderer::Mesh& mesh = std::get<ImportedAsset>(*end.outcome).mesh;
+    EXPECT_TRUE(mesh.positions.is_lent() && mesh.normals.is_lent() && mesh.triangles.is_lent());
 }
 
 TEST_F(RunImport, RefusesAnImportedFormOverTheLimit)
