@@ -29,7 +29,7 @@ struct alignas(64) Ahead {
 
     std::int32_t entry[kRoom]; // a float's bits
     std::uint32_t code[kRoom];
-    unsigned count;
+    std::size_t count;
 
     HWY_INLINE void clear()
     {
@@ -40,10 +40,12 @@ struct alignas(64) Ahead {
     // The next one that is entered no later than `end`.
     HWY_INLINE std::uint32_t pop(float end)
     {
+        std::size_t at = count;
         do
-            --count;
-        while (std::bit_cast<float>(entry[count]) > end);
-        return code[count];
+            --at;
+        while (std::bit_cast<float>(entry[at]) > end);
+        count = at;
+        return code[at];
     }
 };
 // An odd number of cache lines: else all would share the same few sets.
@@ -52,7 +54,7 @@ static_assert(sizeof(Ahead) / 64 % 2 == 1);
 // The children that were entered, onto the stack, the nearer above the farther.
 struct PushAt {
     std::size_t lane; // of the first child
-    unsigned base;    // of the stack, where the node's children begin
+    std::size_t base; // of the stack, where the node's children begin
 };
 
 #if HWY_MAX_BYTES >= 32
@@ -86,11 +88,12 @@ push(Ahead& ahead, const WideNode& node, PushAt, hn::Vec<Eight> entry, hn::Mask<
     const auto key = hn::Or(hn::AndNot(place, hn::BitCast(di, entry)), hn::Iota(di, 0));
     const auto sorted = sort_eight(di, hn::IfThenElse(hn::RebindMask(di, entered), key, hn::Set(di, -1)));
     const auto places = hn::BitCast(du, hn::And(sorted, place));
-    hn::StoreU(sorted, di, ahead.entry + ahead.count);
+    const std::size_t count = ahead.count;
+    ahead.count = count + hn::CountTrue(d, entered);
+    hn::StoreU(sorted, di, ahead.entry + count);
     hn::StoreU(hn::TableLookupLanes(hn::Load(du, node.child), hn::IndicesFromVec(du, places)),
                du,
-               ahead.code + ahead.count);
-    ahead.count += static_cast<unsigned>(hn::CountTrue(d, entered));
+               ahead.code + count);
 }
 
 #else
@@ -103,7 +106,7 @@ push(Ahead& ahead, const WideNode& node, PushAt at_lanes, hn::Vec<Eight> entry, 
     hn::Store(hn::BitCast(hn::RebindToSigned<Eight>(), entry), hn::RebindToSigned<Eight>(), entries);
     for (unsigned hits = bits_of(d, entered); hits != 0; hits &= hits - 1) {
         const auto i = static_cast<unsigned>(__builtin_ctz(hits));
-        unsigned at = ahead.count++;
+        std::size_t at = ahead.count++;
         for (; at > at_lanes.base && ahead.entry[at - 1] < entries[i]; --at) {
             ahead.entry[at] = ahead.entry[at - 1];
             ahead.code[at] = ahead.code[at - 1];
@@ -121,7 +124,7 @@ HWY_INLINE void visit_node(const WideNode& node, const LoneRays& run, unsigned r
     const Eight d;
     // The reciprocal's roundings, and the bits of an entry that its child's place takes.
     const auto factor = hn::Set(d, 1 - 0x1p-19f);
-    const unsigned base = ahead.count;
+    const std::size_t base = ahead.count;
     for (std::size_t lane = 0; lane < WideNode::kChildren; lane += hn::MaxLanes(d)) {
         auto entry = hn::Set(d, run.begin[ray]), exit = hn::Set(d, run.end[ray]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -244,7 +247,7 @@ public:
     HWY_INLINE void walk()
     {
         for (unsigned i = 0; i < kInFlight; ++i)
-            free_[i] = i;
+            free_[i] = ahead_ + i;
         std::uint64_t left = run_.rays;
         for (;;) {
             for (; left != 0 && frees_ != 0; left &= left - 1)
@@ -274,12 +277,12 @@ private:
         const unsigned nodes = before_node_;
         for (unsigned i = 0; i < nodes; ++i) {
             const unsigned ray = at_node_[i];
-            visit_node(mesh_.nodes[code_[ray]], run_, ray, ahead_[place_[ray]]);
+            visit_node(mesh_.nodes[code_[ray]], run_, ray, (*ahead_of_[ray]));
         }
         before_node_ = 0;
         for (unsigned i = 0; i < nodes; ++i) {
             const unsigned ray = at_node_[i];
-            route(ray, ahead_[place_[ray]].pop(run_.end[ray]));
+            route(ray, ahead_of_[ray]->pop(run_.end[ray]));
         }
     }
     HWY_INLINE void visit_leaves()
@@ -297,14 +300,14 @@ private:
         for (unsigned i = 0; i < leaves; ++i) {
             const unsigned ray = at_leaf_[i];
             if (looks_[i].may != 0) take(ray, looks_[i]);
-            route(ray, ahead_[place_[ray]].pop(run_.end[ray]));
+            route(ray, ahead_of_[ray]->pop(run_.end[ray]));
         }
     }
 
     HWY_INLINE void board(unsigned ray)
     {
-        place_[ray] = free_[--frees_];
-        ahead_[place_[ray]].clear();
+        ahead_of_[ray] = free_[--frees_];
+        ahead_of_[ray]->clear();
         found_[ray] = 0;
         route(ray, 0);
     }
@@ -313,7 +316,7 @@ private:
     HWY_INLINE void route(unsigned ray, std::uint32_t code)
     {
         if (code == Ahead::kNothing) {
-            free_[frees_++] = place_[ray];
+            free_[frees_++] = ahead_of_[ray];
             return;
         }
         code_[ray] = code;
@@ -399,9 +402,9 @@ private:
     unsigned frees_ = kInFlight;
     // One more than there are: the last is written where nothing is to be remembered.
     unsigned at_node_[kInFlight + 1], at_leaf_[kInFlight + 1]; // rays that stand before a node, a leaf
-    unsigned free_[kInFlight];                                 // places
-    LoneRays::Lanes<std::uint32_t> code_;                      // the node or leaf
-    LoneRays::Lanes<unsigned> place_;                          // in `ahead_`
+    Ahead* free_[kInFlight];
+    LoneRays::Lanes<std::uint32_t> code_; // the node or leaf
+    LoneRays::Lanes<Ahead*> ahead_of_;
     LoneRays::Lanes<unsigned> found_;
     Look looks_[kInFlight];
     Candidate candidates_[LoneRays::kRays][kCandidates];

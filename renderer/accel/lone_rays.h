@@ -23,9 +23,9 @@ struct LoneRays {
     // A box is entered along each axis at plane * inverse + near_shift, left at plane * inverse + far_shift.
     alignas(64) Lanes<float> inverse[3];
     alignas(64) Lanes<float> near_shift[3], far_shift[3];
-    Lanes<std::uint8_t> near_row[3]; // of WideNode::planes, in bytes; the far one is near_row ^ 32
-    alignas(64) Lanes<float> begin;  // nothing before it matters
-    alignas(64) Lanes<float> end;    // nor behind it; hits draw it in
+    Lanes<std::uint32_t> near_row[3]; // of WideNode::planes, in bytes; the far one is near_row ^ 32
+    alignas(64) Lanes<float> begin;   // nothing before it matters
+    alignas(64) Lanes<float> end;     // nor behind it; hits draw it in
 
     // The triangle test: the ray's start with its axes renamed, then its shear.
     alignas(64) Lanes<float> from_x, from_y, from_z;

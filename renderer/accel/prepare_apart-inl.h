@@ -141,7 +141,7 @@ private:
             std::uint32_t bits[3];
             for (std::uint32_t axis = 0; axis < 3; ++axis) {
                 bits[axis] = negative[axis] >> lane & 1;
-                run_.near_row[axis][i_ + lane] = static_cast<std::uint8_t>((2 * axis + bits[axis]) * 32);
+                run_.near_row[axis][i_ + lane] = (2 * axis + bits[axis]) * 32;
             }
             // x, y or z: 0, 1 or 2
             const std::uint32_t main = 2 - 2 * (main_is_x >> lane & 1) - (main_is_y >> lane & 1);
