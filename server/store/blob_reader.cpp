@@ -90,7 +90,7 @@ std::span<const std::byte> BlobReader::at(std::uint64_t offset)
 void BlobReader::let_go()
 {
     held_ = kNone;
-    buffer_ = {};
+    std::vector<std::byte>().swap(buffer_); // an assignment would keep the memory
 }
 
 } // namespace server

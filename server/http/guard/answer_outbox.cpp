@@ -64,7 +64,7 @@ AnswerOutbox::Sent AnswerOutbox::send(int fd, std::size_t most)
         waiting_at_ += count;
         if (sent != Sent::more) return sent;
     }
-    waiting_ = {};
+    std::string().swap(waiting_); // an assignment would keep the memory
     waiting_at_ = 0;
     while (body_at_ < body_size_) {
         if (sent_ >= end) return Sent::more;
