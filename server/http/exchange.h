@@ -35,7 +35,8 @@ struct Payload {
     // The bytes from an offset on, as many as are at hand, but one at least; good until the next call. Throws
     // StoreError. Empty for HEAD.
     std::function<std::span<const std::byte>(std::uint64_t offset)> source{};
-    std::function<void()> let_go{}; // of what the source can have again: the client makes us wait. May be empty
+    std::function<void()>
+        let_go{}; // of what the source can have again: the client makes us wait. May be empty
     std::uint64_t size = 0;
     std::string digest; // "sha256:<hex>"
     std::string content_type;
