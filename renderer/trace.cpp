@@ -84,7 +84,7 @@ void trace_block(
     for (std::uint32_t y = 0; y < block.height; ++y)
         for (std::uint32_t x = 0; x < block.width; ++x)
             samplers[y * kBlock + x].emplace(seed, block.x + x, block.y + y);
-    for (std::uint32_t s = slice.first; s < slice.end; ++s)
+    for (std::uint32_t s = slice.first; s < slice.end && !runs.stopped(); ++s)
         for (std::uint32_t y = 0; y < block.height; ++y)
             for (std::uint32_t x = 0; x < block.width; ++x) {
                 const std::size_t pixel =
