@@ -94,7 +94,8 @@ public:
     {
     }
 
-    // Too many leaves met the fan: of rays that have not hit nothing is known.
+    // Too many leaves met the fan: of rays that have not hit nothing is known, nor of any whose nearest hit was
+    // asked for.
     HWY_INLINE bool gave_up() const { return leaves_ > fan_.most_leaves; }
 
     // Bit i: ray i hit.
@@ -112,7 +113,7 @@ public:
         end_ = farthest_end();
         for (;;) {
             if ((next.code & ChildCode::kLeaf) != 0) {
-                if (kAnyHit && ++leaves_ > fan_.most_leaves) return found_.settle();
+                if (++leaves_ > fan_.most_leaves) return kAnyHit ? found_.settle() : 0;
                 visit_leaf(next.code);
             } else {
                 const WideNode& node = mesh_.nodes[next.code];

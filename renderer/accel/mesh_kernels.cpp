@@ -111,7 +111,14 @@ bool trace_fan(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* h
     if (!prepare_fan(fan, mesh, rays, count, kAnyHit)) return false;
     FanWalk<kAnyHit> fan_walk(mesh, fan, rays, hits);
     found = fan_walk.walk();
-    if (!kAnyHit || !fan_walk.gave_up()) return true;
+    if (!fan_walk.gave_up()) return true;
+    if (!kAnyHit) { // rays that stand far apart among small triangles
+        trace_apart<kAnyHit>(mesh, rays, count, hits);
+        found = 0;
+        for (unsigned i = 0; i < count; ++i)
+            found |= std::uint64_t{hits[i].primitive != TriangleBlock::kNone} << i;
+        return true;
+    }
     Ray left[RayRun::kRays];
     unsigned from[RayRun::kRays];
     unsigned waiting = 0;

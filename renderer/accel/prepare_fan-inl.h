@@ -27,6 +27,8 @@ inline constexpr float kSteepest = 1.25f;
 // Where the triangles that shadow rays start on are much smaller than what lies between two of the rays, they have few
 // leaves in common: when 64 rays have met this many, those that have not hit are followed in another way.
 inline constexpr unsigned kLeavesOfFan = 24;
+// The same of rays from a camera, which part only where triangles are far smaller than what lies between them.
+inline constexpr unsigned kLeavesOfCameraFan = 256;
 
 class FanMaker {
 public:
@@ -38,6 +40,7 @@ public:
     // False: no fan, or one that float could not tell from its neighbours.
     HWY_INLINE bool make(bool any_hit)
     {
+        any_hit_ = any_hit;
         const Ray& first = rays_[0];
         const bool outward = first.origin == rays_[1].origin;
         if (mesh_.scale != 1 || mesh_.residuals != nullptr || (!outward && !any_hit)) return false;
@@ -73,7 +76,7 @@ private:
         fan_.turned = (along[fan_.z] < 0) == outward;
         fan_.apex = {apex_[fan_.x], apex_[fan_.y], apex_[fan_.z]};
         fan_.count = count_;
-        fan_.most_leaves = count_ * kLeavesOfFan / RayFan::kRays;
+        fan_.most_leaves = count_ * (any_hit_ ? kLeavesOfFan : kLeavesOfCameraFan) / RayFan::kRays;
         fan_.size = std::max(max_abs(mesh_.bounds.lower), max_abs(mesh_.bounds.upper));
     }
 
@@ -188,6 +191,7 @@ private:
     const MeshView& mesh_;
     const Ray* rays_;
     unsigned count_;
+    bool any_hit_ = false;
     Vec3d apex_;
     alignas(64) float first_half_[RayFan::kRays][4], second_half_[RayFan::kRays][4];
 };

@@ -24,7 +24,7 @@ struct RayFan {
     unsigned count = 0;              // rays that are there; the lanes behind them are copies of the last one
     std::size_t x = 0, y = 1, z = 2; // axes of the mesh
     bool turned = false;             // depths grow towards lower coordinates
-    unsigned most_leaves = 0;        // that rays to a light visit together
+    unsigned most_leaves = 0;        // that the rays visit together
     Vec3d apex;                      // x, y, z as named above, in the mesh's coordinates
     float aside = 0;                 // how far the lines pass from the apex at most
     float reach = 0;                 // how far the rays' origins are from it

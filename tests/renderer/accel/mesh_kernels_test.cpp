@@ -211,6 +211,23 @@ TEST_P(EveryMeshKernel, FollowsRaysAmongCornersThatAreMoreThanFloats)
     EXPECT_GT(hits_, rays_ / 5);
 }
 
+// Sparse rays over small triangles: together they meet more leaves than a fan may, and are followed in another way.
+TEST_P(EveryMeshKernel, FollowsFansWhoseRaysStandFarApart)
+{
+    Random random(40);
+    const Mesh mesh = grid(100, 100);
+    const MeshBvh bvh = build(mesh);
+    const Bounds3d box{to_double(bvh.bounds().lower), to_double(bvh.bounds().upper)};
+    const Vec3d eye = box.center() + Vec3d{0, 2 * length(box.extent()), 0};
+    for (int i = 0; i < 3; ++i) {
+        std::vector<Ray> rays;
+        while (rays.size() < kRun)
+            rays.push_back({eye, random.in_box(box.lower, box.upper) - eye});
+        expect_as_brute_force(bvh, rays);
+    }
+    EXPECT_GT(hits_, rays_ / 2);
+}
+
 TEST_P(EveryMeshKernel, FollowsAnyNumberOfRaysApart)
 {
     Random random(36);
