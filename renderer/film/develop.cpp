@@ -29,14 +29,13 @@ void append_float(std::vector<std::uint8_t>& bytes, float value)
 Image8 develop(const LinearImage& image, const ImageSettings& settings)
 {
     Image8 out{image.width_px, image.height_px, {}, settings.tone == Tone::srgb};
-    out.rgb.reserve(image.pixels.size() * 3);
+    out.rgb.resize(image.pixels.size() * 3);
     const double exposure = exp2(std::clamp(settings.exposure_ev, -1000.0, 1000.0));
-    for (const Rgb& pixel : image.pixels) {
-        for (const float channel : {pixel.r, pixel.g, pixel.b}) {
-            const float exposed = finite_or_black(static_cast<double>(channel) * exposure);
-            out.rgb.push_back(quantise_8(out.srgb ? srgb_from_linear(exposed) : exposed));
-        }
-    }
+    const auto code = out.srgb ? srgb_8_from_linear : quantise_8;
+    std::uint8_t* to = out.rgb.data();
+    for (const Rgb& pixel : image.pixels)
+        for (const float channel : {pixel.r, pixel.g, pixel.b})
+            *to++ = code(finite_or_black(static_cast<double>(channel) * exposure));
     return out;
 }
 

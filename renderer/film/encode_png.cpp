@@ -1,84 +1,107 @@
 #include "renderer/film/develop.h"
 
-// The one place that compiles the encoder.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb_image_write.h>
-#pragma GCC diagnostic pop
-
-#include <array>
+#include <csetjmp>
+#include <new>
+#include <png.h>
 #include <stdexcept>
-#include <string_view>
+#include <string>
+#include <utility>
 
 namespace renderer {
 
 namespace {
 
-constexpr std::size_t kAfterHeader = 8 + 25; // signature and IHDR: further chunks go here, before the pixels
+// Of rendered pictures, filter and level that are four times as fast as the encoder's defaults for a tenth more
+// bytes (960 x 600: 32 ms and 411 kB; defaults: 157 ms and 392 kB).
+constexpr int kFilter = PNG_FILTER_SUB;
+constexpr int kLevel = 3;
 
-// The encoder counts bytes in int and doubles its buffers.
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr png_uint_32 kMostSide = 0x7fffffff; // of the format
 
-// CRC-32 of PNG, annex D of its specification.
-std::uint32_t crc_of(std::string_view bytes)
+struct Encoder {
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    std::vector<std::uint8_t> bytes;
+    std::string error;
+    bool out_of_memory = false; // while appending: no exception may pass through the library
+
+    ~Encoder() { png_destroy_write_struct(&png, &info); }
+};
+
+[[noreturn]] void on_error(png_structp png, png_const_charp what)
 {
-    std::uint32_t crc = 0xffffffffu;
-    for (const char byte : bytes) {
-        crc ^= static_cast<std::uint8_t>(byte);
-        for (int bit = 0; bit < 8; ++bit)
-            crc = (crc >> 1) ^ ((crc & 1u) != 0 ? 0xedb88320u : 0u);
+    static_cast<Encoder*>(png_get_error_ptr(png))->error = what;
+    png_longjmp(png, 1);
+}
+
+void on_warning(png_structp /*png*/, png_const_charp /*what*/) {}
+
+void on_bytes(png_structp png, png_bytep data, std::size_t size)
+{
+    auto& encoder = *static_cast<Encoder*>(png_get_io_ptr(png));
+    try {
+        encoder.bytes.insert(encoder.bytes.end(), data, data + size);
+    } catch (const std::bad_alloc&) {
+        encoder.out_of_memory = true;
     }
-    return ~crc;
+    if (encoder.out_of_memory) png_error(png, "out of memory");
 }
 
-std::string big_endian(std::uint32_t value)
-{
-    return {static_cast<char>(value >> 24),
-            static_cast<char>(value >> 16),
-            static_cast<char>(value >> 8),
-            static_cast<char>(value)};
-}
+void on_flush(png_structp /*png*/) {}
 
-std::string chunk(std::string_view type, std::string_view data)
+// Nothing here has a destructor: on an error the library leaves it by longjmp. False: see encoder.error.
+bool write(Encoder& encoder, const Image8& image, const png_text* texts, int text_count)
 {
-    const std::string body = std::string(type) + std::string(data);
-    return big_endian(static_cast<std::uint32_t>(data.size())) + body + big_endian(crc_of(body));
-}
-
-// Keyword, then: not compressed, method 0, no language tag, no translated keyword.
-std::string text_chunk(const PngText& text)
-{
-    return chunk("iTXt", text.keyword + std::string(5, '\0') + text.text);
-}
-
-void append_bytes(void* context, void* data, int size)
-{
-    auto& out = *static_cast<std::vector<std::uint8_t>*>(context);
-    const auto* const begin = static_cast<const std::uint8_t*>(data);
-    out.insert(out.end(), begin, begin + size);
+    if (setjmp(png_jmpbuf(encoder.png)) != 0) return false;
+    png_set_write_fn(encoder.png, &encoder, on_bytes, on_flush);
+    png_set_user_limits(encoder.png, kMostSide, kMostSide);
+    png_set_IHDR(encoder.png,
+                 encoder.info,
+                 image.width_px,
+                 image.height_px,
+                 8,
+                 PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_filter(encoder.png, PNG_FILTER_TYPE_BASE, kFilter);
+    png_set_compression_level(encoder.png, kLevel);
+    if (image.srgb) png_set_sRGB(encoder.png, encoder.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (text_count > 0) png_set_text(encoder.png, encoder.info, texts, text_count);
+    png_write_info(encoder.png, encoder.info);
+    const std::size_t row_bytes = image.width_px * std::size_t{3};
+    for (std::size_t y = 0; y < image.height_px; ++y)
+        png_write_row(encoder.png, image.rgb.data() + y * row_bytes);
+    png_write_end(encoder.png, nullptr);
+    return true;
 }
 
 } // namespace
 
 std::vector<std::uint8_t> encode_png(const Image8& image, std::span<const PngText> texts)
 {
-    if (std::size_t{image.height_px} * (image.width_px * std::size_t{3} + 1) > kMostBytes)
-        throw std::runtime_error(
-            "a picture of more than 1 GiB cannot be encoded as PNG: render it in regions, or as PFM");
-    std::vector<std::uint8_t> png;
-    const int width = static_cast<int>(image.width_px), height = static_cast<int>(image.height_px);
-    if (stbi_write_png_to_func(append_bytes, &png, width, height, 3, image.rgb.data(), width * 3) == 0 ||
-        png.size() <= kAfterHeader)
-        throw std::runtime_error("cannot encode the picture as PNG");
-    std::string extra;
-    if (image.srgb) extra += chunk("sRGB", std::string_view("\0", 1)); // rendering intent: perceptual
-    for (const PngText& text : texts)
-        extra += text_chunk(text);
-    png.insert(png.begin() + static_cast<std::ptrdiff_t>(kAfterHeader), extra.begin(), extra.end());
-    return png;
+    std::vector<std::string> copies; // the library wants to write into what it only reads
+    copies.reserve(texts.size() * 2);
+    std::string no_language;
+    std::vector<png_text> entries;
+    for (const PngText& text : texts) {
+        png_text entry{};
+        entry.compression = PNG_ITXT_COMPRESSION_NONE;
+        entry.key = copies.emplace_back(text.keyword).data();
+        entry.text = copies.emplace_back(text.text).data();
+        entry.itxt_length = text.text.size();
+        entry.lang = entry.lang_key = no_language.data();
+        entries.push_back(entry);
+    }
+    Encoder encoder;
+    encoder.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoder, on_error, on_warning);
+    if (encoder.png != nullptr) encoder.info = png_create_info_struct(encoder.png);
+    if (encoder.info == nullptr) throw std::bad_alloc();
+    if (!write(encoder, image, entries.data(), static_cast<int>(entries.size()))) {
+        if (encoder.out_of_memory) throw std::bad_alloc();
+        throw std::runtime_error("cannot encode the picture as PNG: " + encoder.error);
+    }
+    return std::move(encoder.bytes);
 }
 
 } // namespace renderer

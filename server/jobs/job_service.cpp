@@ -181,7 +181,8 @@ JobService::wait(const JobId& id, std::chrono::milliseconds timeout, const std::
         std::optional<api::JobView> view = state_->view(id, now.job);
         if (!view || api::is_final(view->state)) return view;
         if (!known_etag.empty() && etag_of(*view) != known_etag) return view;
-        if (!state_->live.wait(id, now.mark, deadline, !known_etag.empty())) return get(id);
+        const auto until = known_etag.empty() ? LiveJobs::Until::end : LiveJobs::Until::change;
+        if (!state_->live.wait(id, now.mark, deadline, until)) return get(id);
     }
 }
 

@@ -24,7 +24,6 @@ void LiveJobs::changed(Entry& entry, bool phase)
 {
     entry.progress_change = ++changes_;
     if (phase) entry.phase_change = queue_changes_ = changes_;
-    change_.notify_all();
 }
 
 void LiveJobs::index(const JobId& id, Entry& entry, Sharing sharing)
@@ -57,7 +56,7 @@ OutcomePtr LiveJobs::published_result(const Sharing& sharing) const
 
 OutcomePtr LiveJobs::add(const JobId& id, Sharing sharing)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     OutcomePtr published = published_result(sharing);
     const bool joined = published != nullptr || (sharing.takes_results && is_under_way(sharing.render_key));
     Entry& entry = jobs_[id];
@@ -73,7 +72,7 @@ OutcomePtr LiveJobs::add(const JobId& id, Sharing sharing)
 
 LiveJobs::Begun LiveJobs::begin(const JobId& id, std::int64_t started_ms)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     Entry& entry = jobs_[id];
     if (entry.job.outcome) return {{}, entry.job.outcome};
     entry.stop = std::stop_source();
@@ -85,7 +84,7 @@ LiveJobs::Begun LiveJobs::begin(const JobId& id, std::int64_t started_ms)
 
 LiveJobs::Described LiveJobs::describe(const JobId& id, Sharing sharing)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     Entry& entry = jobs_[id];
     index(id, entry, std::move(sharing));
     if (entry.job.phase != LivePhase::canceling) {
@@ -101,7 +100,7 @@ LiveJobs::Described LiveJobs::describe(const JobId& id, Sharing sharing)
 
 void LiveJobs::set_running(const JobId& id)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     const auto found = jobs_.find(id);
     if (found == jobs_.end() || found->second.job.phase != LivePhase::preparing) return;
     found->second.job.phase = LivePhase::running;
@@ -110,7 +109,7 @@ void LiveJobs::set_running(const JobId& id)
 
 void LiveJobs::set_progress(const JobId& id, double fraction, std::uint32_t samples)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     const auto found = jobs_.find(id);
     if (found == jobs_.end() || !is_active(found->second.job.phase)) return;
     LiveJob& job = found->second.job;
@@ -122,7 +121,7 @@ void LiveJobs::set_progress(const JobId& id, double fraction, std::uint32_t samp
 
 void LiveJobs::requeue(const JobId& id)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     const auto found = jobs_.find(id);
     if (found == jobs_.end() || found->second.job.outcome) return;
     found->second.job = LiveJob{};
@@ -133,7 +132,7 @@ bool LiveJobs::request_stop(const JobId& id, StopCause cause)
 {
     std::stop_source stop{std::nostopstate};
     {
-        const std::lock_guard lock(mutex_);
+        const Changing changing(*this);
         const auto found = jobs_.find(id);
         if (found == jobs_.end() || !is_active(found->second.job.phase)) return false;
         Entry& entry = found->second;
@@ -169,7 +168,7 @@ StopCause LiveJobs::stop_cause(const JobId& id) const
 
 LiveJobs::Settled LiveJobs::finish(const JobId& id, JobOutcome outcome, bool reused)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     Entry& entry = jobs_[id];
     if (entry.job.phase == LivePhase::canceling)
         outcome = JobOutcome{.phase = LivePhase::canceled, .finished_ms = outcome.finished_ms};
@@ -195,7 +194,7 @@ LiveJobs::Settled LiveJobs::finish(const JobId& id, JobOutcome outcome, bool reu
 
 void LiveJobs::forget(const JobId& id)
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     const auto found = jobs_.find(id);
     if (found != jobs_.end()) {
         const auto same_key = by_key_.find(found->second.sharing.render_key);
@@ -206,7 +205,6 @@ void LiveJobs::forget(const JobId& id)
         jobs_.erase(found);
     }
     queue_changes_ = ++changes_;
-    change_.notify_all();
 }
 
 LiveJobs::Snapshot LiveJobs::snapshot(const JobId& id) const
@@ -233,7 +231,7 @@ std::unordered_map<JobId, LiveJob> LiveJobs::all() const
 bool LiveJobs::wait(const JobId& id,
                     const Mark& mark,
                     std::chrono::steady_clock::time_point deadline,
-                    bool progress) const
+                    Until until) const
 {
     std::unique_lock lock(mutex_);
     bool moved = false;
@@ -242,10 +240,11 @@ bool LiveJobs::wait(const JobId& id,
         // A job without an entry changes where some phase changes: it may be the one that is claimed next.
         if (found == jobs_.end())
             moved = mark.phase != 0 || queue_changes_ != mark.queue;
+        else if (until == Until::end)
+            moved = found->second.job.outcome != nullptr;
         else
             moved = found->second.phase_change != mark.phase ||
-                    (progress &&
-                     (found->second.progress_change != mark.progress || queue_changes_ != mark.queue));
+                    found->second.progress_change != mark.progress || queue_changes_ != mark.queue;
         return moved || closed_;
     });
     return moved && !closed_;
@@ -259,9 +258,8 @@ bool LiveJobs::wait_forgotten(const JobId& id, std::chrono::steady_clock::time_p
 
 void LiveJobs::close()
 {
-    const std::lock_guard lock(mutex_);
+    const Changing changing(*this);
     closed_ = true;
-    change_.notify_all();
 }
 
 std::vector<std::string> LiveJobs::image_digests() const

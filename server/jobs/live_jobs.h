@@ -98,12 +98,14 @@ public:
 
     Snapshot snapshot(const JobId& id) const;
     std::unordered_map<JobId, LiveJob> all() const;
-    // Until the job changed since `mark` (with `progress`, also by it or its place in the queue).
+    // Until the job ended, or, with Until::change, until anything that a client sees of it changed since `mark`:
+    // phase, progress, place in the queue. A job not known here may have ended with every phase that changes.
     // False: time is up, or the service closes.
+    enum class Until : std::uint8_t { end, change };
     bool wait(const JobId& id,
               const Mark& mark,
               std::chrono::steady_clock::time_point deadline,
-              bool progress) const;
+              Until until) const;
     bool wait_forgotten(const JobId& id, std::chrono::steady_clock::time_point deadline) const;
     void close(); // every wait returns, now and later
     // Pictures that live outcomes name.
@@ -117,6 +119,24 @@ private:
         StopCause cause = StopCause::none;
         std::uint64_t progress_change = 0, phase_change = 0;
     };
+    // The lock of whoever changes something. Waiters are called once it is free: called before, each would
+    // wake only to wait for it.
+    class Changing {
+    public:
+        explicit Changing(LiveJobs& jobs) : jobs_(jobs), lock_(jobs.mutex_) {}
+        ~Changing()
+        {
+            lock_.unlock();
+            jobs_.change_.notify_all();
+        }
+        Changing(const Changing&) = delete;
+        Changing& operator=(const Changing&) = delete;
+
+    private:
+        LiveJobs& jobs_;
+        std::unique_lock<std::mutex> lock_;
+    };
+
     void changed(Entry& entry, bool phase);
     void index(const JobId& id, Entry& entry, Sharing sharing);
     bool is_under_way(const std::string& render_key) const;

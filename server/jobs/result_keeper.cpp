@@ -45,6 +45,7 @@ void ResultKeeper::keep(KeptOutcome kept)
         if (kept.lease) change_.wait(lock, [&] { return closing_ || waiting_.size() < kMostWaiting; });
     }
     waiting_.push_back(std::move(kept));
+    lock.unlock();
     change_.notify_all();
 }
 

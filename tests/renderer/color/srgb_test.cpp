@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -27,6 +28,29 @@ TEST(Srgb, GoesThereAndBackForEveryCode)
         const float encoded = static_cast<float>(code) / 255;
         EXPECT_EQ(quantise_8(srgb_from_linear(linear_from_srgb(encoded))), code);
     }
+}
+
+TEST(Srgb, FindsTheCodeOfEveryNumberWithoutThePower)
+{
+    const auto same = [](std::uint32_t bits) {
+        const auto x = std::bit_cast<float>(bits);
+        return renderer::srgb_8_from_linear(x) == quantise_8(srgb_from_linear(x));
+    };
+    const auto one = std::bit_cast<std::uint32_t>(1.0f);
+    for (std::uint32_t bits = 0; bits <= one + 1000; bits += 997)
+        ASSERT_TRUE(same(bits)) << bits;
+    for (int code = 0; code < 255; ++code) { // the neighbourhood of every step
+        const auto step =
+            std::bit_cast<std::uint32_t>(linear_from_srgb((static_cast<float>(code) + 0.5f) / 255));
+        for (std::uint32_t bits = step - 200; bits <= step + 200; ++bits)
+            ASSERT_TRUE(same(bits)) << bits;
+    }
+    for (const float x : {-1.0f,
+                          -0.0f,
+                          7.0f,
+                          std::numeric_limits<float>::infinity(),
+                          std::numeric_limits<float>::quiet_NaN()})
+        EXPECT_EQ(renderer::srgb_8_from_linear(x), quantise_8(srgb_from_linear(x)));
 }
 
 TEST(Srgb, NeverFalls)

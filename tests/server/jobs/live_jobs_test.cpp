@@ -15,6 +15,8 @@ using server::OutcomePtr;
 using server::Sharing;
 using server::StopCause;
 
+using Until = LiveJobs::Until;
+
 constexpr auto kPatience = 60s;
 
 std::chrono::steady_clock::time_point in(std::chrono::milliseconds time)
@@ -196,32 +198,39 @@ TEST(LiveJobs, JoinNothingThatIsBeingCanceled)
     EXPECT_FALSE(live.snapshot("second").job->joined);
 }
 
-TEST(LiveJobs, WakeWhoWaitsForAPhaseOrForProgress)
+TEST(LiveJobs, WakeWhoWaitsForAChangeAtEachAndWhoWaitsForTheEndThenAlone)
 {
     LiveJobs live;
     live.add("a", shares("key"));
     live.begin("a", 1);
     const LiveJobs::Mark mark = live.snapshot("a").mark;
-    auto phase = std::async(std::launch::async, [&] { return live.wait("a", mark, in(kPatience), false); });
-    auto progress = std::async(std::launch::async, [&] { return live.wait("a", mark, in(kPatience), true); });
+    auto end =
+        std::async(std::launch::async, [&] { return live.wait("a", mark, in(kPatience), Until::end); });
+    auto change =
+        std::async(std::launch::async, [&] { return live.wait("a", mark, in(kPatience), Until::change); });
     live.set_progress("a", 0.5, 1);
-    EXPECT_TRUE(progress.get());
-    EXPECT_FALSE(live.wait("a", mark, in(1ms), false)) << "progress is no phase";
+    EXPECT_TRUE(change.get());
     live.set_running("a");
-    EXPECT_TRUE(phase.get());
-    EXPECT_TRUE(live.wait("a", mark, in(kPatience), false)) << "it has changed since the mark";
+    EXPECT_TRUE(live.wait("a", mark, in(kPatience), Until::change)) << "it has changed since the mark";
+    EXPECT_FALSE(live.wait("a", mark, in(1ms), Until::end)) << "running is no end";
     const LiveJobs::Mark running = live.snapshot("a").mark;
     live.set_progress("a", 0.5, 1); // no news
-    EXPECT_FALSE(live.wait("a", running, in(1ms), true));
+    EXPECT_FALSE(live.wait("a", running, in(1ms), Until::change));
+    live.finish("a", {});
+    EXPECT_TRUE(end.get());
+    EXPECT_TRUE(live.wait("a", mark, in(kPatience), Until::end)) << "it has ended since the mark";
 }
 
-TEST(LiveJobs, WakeWhoWaitsForAJobOfAnEarlierProcessWhenOneIsClaimed)
+TEST(LiveJobs, WakeWhoWaitsForAJobOfAnEarlierProcessWhenItEnds)
 {
     LiveJobs live;
     const LiveJobs::Mark mark = live.snapshot("old").mark;
-    EXPECT_FALSE(live.wait("old", mark, in(1ms), false));
+    EXPECT_FALSE(live.wait("old", mark, in(1ms), Until::end));
     live.begin("old", 1);
-    EXPECT_TRUE(live.wait("old", mark, in(kPatience), false));
+    EXPECT_FALSE(live.wait("old", mark, in(1ms), Until::end));
+    EXPECT_TRUE(live.wait("old", mark, in(kPatience), Until::change));
+    live.finish("old", {});
+    EXPECT_TRUE(live.wait("old", mark, in(kPatience), Until::end));
 }
 
 TEST(LiveJobs, WakeWhoWaitsForAnEntryToGo)
@@ -233,7 +242,7 @@ TEST(LiveJobs, WakeWhoWaitsForAnEntryToGo)
     auto gone = std::async(std::launch::async, [&] { return live.wait_forgotten("a", in(kPatience)); });
     live.forget("a");
     EXPECT_TRUE(gone.get());
-    EXPECT_TRUE(live.wait("a", mark, in(kPatience), false));
+    EXPECT_TRUE(live.wait("a", mark, in(kPatience), Until::end));
 }
 
 TEST(LiveJobs, LetNobodyWaitOnceClosed)
@@ -241,10 +250,11 @@ TEST(LiveJobs, LetNobodyWaitOnceClosed)
     LiveJobs live;
     live.add("a", shares("key"));
     const LiveJobs::Mark mark = live.snapshot("a").mark;
-    auto waiting = std::async(std::launch::async, [&] { return live.wait("a", mark, in(kPatience), true); });
+    auto waiting =
+        std::async(std::launch::async, [&] { return live.wait("a", mark, in(kPatience), Until::change); });
     live.close();
     EXPECT_FALSE(waiting.get());
-    EXPECT_FALSE(live.wait("a", mark, in(kPatience), true));
+    EXPECT_FALSE(live.wait("a", mark, in(kPatience), Until::change));
 }
 
 } // namespace
