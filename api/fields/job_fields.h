@@ -6,9 +6,9 @@
 // Defaults are the member initialisers of the structs, nowhere else. `unbuilt` names members that scene.md
 // knows and this build does not.
 //
-// A visitor has: number, integer, boolean, word, only, point, direction, color, extents, object, group,
-// kinds, list, table, unbuilt, needs, exclude, and the few below that stand for one place alone: aim,
-// geometry, material_of, placement, files, labels, fail_on.
+// A visitor has: number, integer, boolean, word, only, point, direction, color, textured_number,
+// textured_color, extents, object, group, kinds, list, table, unbuilt, needs, exclude, and the few below that
+// stand for one place alone: aim, geometry, material_of, placement, files, labels, fail_on.
 #pragma once
 
 #include "api/fields/ranges.h"

@@ -9,6 +9,7 @@
 #include "api/json/json.h"
 #include "api/read/fault_list.h"
 #include "api/words/word_table.h"
+#include "renderer/description/texture.h"
 
 #include <array>
 #include <concepts>
@@ -50,6 +51,15 @@ public:
     bool point(const char* name, renderer::Vec3d& value, const char* doc);
     bool direction(const char* name, renderer::Vec3d& value, const char* doc);
     void color(const char* name, renderer::Rgb& value, const Range& range, const char* doc);
+    void textured_color(const char* name, renderer::TexturedColor& value, const Range& range, const char* doc)
+    {
+        color(name, value.value, range, doc);
+    }
+    void
+    textured_number(const char* name, renderer::TexturedNumber& value, const Range& range, const char* doc)
+    {
+        number(name, value.value, range, doc);
+    }
 
     template <std::integral T>
     void integer(const char* name, T& value, const WholeRange& range, const char*)

@@ -9,6 +9,7 @@
 #include "api/job_request.h"
 #include "api/json/json.h"
 #include "api/words/word_table.h"
+#include "renderer/description/texture.h"
 
 #include <concepts>
 #include <cstdint>
@@ -53,6 +54,20 @@ public:
     void point(const char* name, const renderer::Vec3d& value, const char* doc);
     void direction(const char* name, const renderer::Vec3d& value, const char* doc);
     void color(const char* name, const renderer::Rgb& value, const Range& range, const char* doc);
+    void textured_color(const char* name,
+                        const renderer::TexturedColor& value,
+                        const Range& range,
+                        const char* doc)
+    {
+        color(name, value.value, range, doc);
+    }
+    void textured_number(const char* name,
+                         const renderer::TexturedNumber& value,
+                         const Range& range,
+                         const char* doc)
+    {
+        number(name, value.value, range, doc);
+    }
     template <typename... D>
     void extents(const char* name, const char* doc, const D&... sizes)
     {

@@ -7,6 +7,7 @@
 #include "api/job_request.h"
 #include "api/json/json.h"
 #include "api/words/word_table.h"
+#include "renderer/description/texture.h"
 
 #include <concepts>
 #include <cstdint>
@@ -54,6 +55,20 @@ public:
         point(name, value, doc);
     }
     void color(const char* name, const renderer::Rgb& value, const Range&, const char*);
+    void textured_color(const char* name,
+                        const renderer::TexturedColor& value,
+                        const Range& range,
+                        const char* doc)
+    {
+        color(name, value.value, range, doc);
+    }
+    void textured_number(const char* name,
+                         const renderer::TexturedNumber& value,
+                         const Range& range,
+                         const char* doc)
+    {
+        number(name, value.value, range, doc);
+    }
     template <typename... D>
     void extents(const char* name, const char*, const D&... sizes)
     {
