@@ -140,6 +140,85 @@ double log2(double x)
     return static_cast<double>(exponent) + (s + s * (z * p)) * kTwoOverLn2;
 }
 
+double exp(double x)
+{
+    if (!(x >= -746)) return x < 0 ? 0 : x; // NaN stays
+    if (x > 710) return std::numeric_limits<double>::infinity();
+    constexpr double kOneOverLn2 = 1.4426950408889634074;
+    constexpr double kLn2High = 0x1.62e42fefap-1; // its product with a count of 11 bits is exact
+    constexpr double kLn2Low = 0x1.cf79abc9e3b39803p-40;
+    const double count = std::rint(x * kOneOverLn2);
+    const double high = x - count * kLn2High, low = count * kLn2Low;
+    const double y = high - low;      // |y| <= 0.35: the first term left out of the series is below 1e-18
+    double p = 1.0 / 1307674368000.0; // 1/15!
+    p = p * y + 1.0 / 87178291200.0;
+    p = p * y + 1.0 / 6227020800.0;
+    p = p * y + 1.0 / 479001600.0;
+    p = p * y + 1.0 / 39916800.0;
+    p = p * y + 1.0 / 3628800.0;
+    p = p * y + 1.0 / 362880.0;
+    p = p * y + 1.0 / 40320.0;
+    p = p * y + 1.0 / 5040.0;
+    p = p * y + 1.0 / 720.0;
+    p = p * y + 1.0 / 120.0;
+    p = p * y + 1.0 / 24.0;
+    p = p * y + 1.0 / 6.0;
+    p = p * y + 0.5;
+    const double lost = (high - y) - low; // what the rounding of y left
+    return std::ldexp(1 + (y + (y * y * p + lost)), static_cast<int>(count));
+}
+
+double log(double x)
+{
+    return log2(x) * 0.69314718055994530942;
+}
+
+namespace {
+
+// atan of x in [0, 1]: from the nearest multiple of 1/8, by the series of the angle between.
+double atan_unit(double x)
+{
+    constexpr double kAtanOfEighths[9] = {0,
+                                          0.1243549945467614350313548,
+                                          0.2449786631268641541720825,
+                                          0.3587706702705722203959201,
+                                          0.4636476090008061162142562,
+                                          0.5585993153435624359715082,
+                                          0.6435011087932843868028092,
+                                          0.7188299996216245054170142,
+                                          0.7853981633974483096156608};
+    const double nearest = std::rint(x * 8);
+    const double c = nearest / 8;
+    const double t = (x - c) / (1 + x * c), z = t * t; // |t| <= 1/16: t^17 / 17 is below 1e-21
+    double p = -1.0 / 15;
+    p = p * z + 1.0 / 13;
+    p = p * z - 1.0 / 11;
+    p = p * z + 1.0 / 9;
+    p = p * z - 1.0 / 7;
+    p = p * z + 1.0 / 5;
+    p = p * z - 1.0 / 3;
+    return kAtanOfEighths[static_cast<int>(nearest)] + (t + t * (z * p));
+}
+
+} // namespace
+
+double atan2(double y, double x)
+{
+    const double ax = std::abs(x), ay = std::abs(y);
+    if (!std::isfinite(ax + ay)) return std::numeric_limits<double>::quiet_NaN();
+    if (ax + ay == 0) return 0;
+    double angle = ay <= ax ? atan_unit(ay / ax) : kPi / 2 - atan_unit(ax / ay);
+    if (x < 0) angle = kPi - angle;
+    return y < 0 ? -angle : angle;
+}
+
+double acos(double cosine)
+{
+    const double c = cosine < -1 ? -1 : cosine > 1 ? 1 : cosine;
+    // From half the angle, so that no digits are lost where the cosine is near 1 or -1.
+    return 2 * atan2(std::sqrt(1 - c), std::sqrt(1 + c));
+}
+
 float pow(float x, float y)
 {
     return std::pow(x, y);

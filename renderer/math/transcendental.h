@@ -24,6 +24,14 @@ double tan_deg(double degrees);
 double exp2(double x);
 // Base 2 logarithm of x > 0, also of subnormal x; -infinity at 0, NaN below. Within 3 ulp, absolute near 1.
 double log2(double x);
+// e^x, within 2 ulp; 0 below -745, infinity above 709.79.
+double exp(double x);
+// Natural logarithm, as log2.
+double log(double x);
+// Angle of (x, y) from the x axis in (-pi, pi], radians; 0 for (0, 0), NaN for infinities.
+double atan2(double y, double x);
+// Angle in [0, pi] of a cosine, which is clamped to [-1, 1].
+double acos(double cosine);
 
 // x^y for x >= 0, as std::pow(float, float) rounds it.
 float pow(float x, float y);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace {
 
@@ -101,4 +102,43 @@ TEST(Log2, IsWithinThreeUlpAndExactAtPowersOfTwo)
     EXPECT_EQ(renderer::log2(INFINITY), INFINITY);
     EXPECT_TRUE(std::isnan(renderer::log2(-1)));
     EXPECT_TRUE(std::isnan(renderer::log2(NAN)));
+}
+
+TEST(Exp, IsWithinTwoUlpOfTheTrueValue)
+{
+    for (std::uint64_t i = 0; i < 200000; ++i) {
+        const double x = (spread(i) - 0.5) * (i % 2 == 0 ? 2 : 1400);
+        ASSERT_LE(ulps(renderer::exp(x), std::exp(static_cast<long double>(x))), 2) << x;
+    }
+    EXPECT_EQ(renderer::exp(0), 1);
+    EXPECT_EQ(renderer::exp(-1e9), 0);
+    EXPECT_EQ(renderer::exp(1e9), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(renderer::exp(-std::numeric_limits<double>::infinity()), 0);
+    EXPECT_TRUE(std::isnan(renderer::exp(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(Atan2, IsWithinThreeUlpOfTheTrueValueInEveryQuarter)
+{
+    for (std::uint64_t i = 0; i < 200000; ++i) {
+        const double x = spread(2 * i) - 0.5, y = (spread(2 * i + 1) - 0.5) * (i % 3 == 0 ? 1e-9 : 1);
+        ASSERT_LE(
+            ulps(renderer::atan2(y, x), std::atan2(static_cast<long double>(y), static_cast<long double>(x))),
+            3)
+            << y << " " << x;
+    }
+    EXPECT_EQ(renderer::atan2(0, 0), 0);
+    EXPECT_EQ(renderer::atan2(0, 1), 0);
+    EXPECT_EQ(renderer::atan2(0, -1), renderer::kPi);
+    EXPECT_EQ(renderer::atan2(1, 0), renderer::kPi / 2);
+    EXPECT_EQ(renderer::atan2(-1, 0), -renderer::kPi / 2);
+    EXPECT_TRUE(std::isnan(renderer::atan2(std::numeric_limits<double>::quiet_NaN(), 1)));
+}
+
+TEST(Acos, IsTrueToTheLastDigitsAlsoNearOneAndMinusOne)
+{
+    for (const double c : {-1.0, -0.999999999, -0.5, 0.0, 0.3, 0.999999999999, 1.0})
+        EXPECT_NEAR(renderer::acos(c), static_cast<double>(std::acos(static_cast<long double>(c))), 1e-15)
+            << c;
+    EXPECT_EQ(renderer::acos(2), 0);
+    EXPECT_EQ(renderer::acos(-2), renderer::kPi);
 }
