@@ -11,20 +11,15 @@
 // stand for one place alone: aim, geometry, material_of, placement, files, labels, fail_on.
 #pragma once
 
+#include "api/fields/material_fields.h"
 #include "api/fields/ranges.h"
+#include "api/fields/sees.h"
 #include "api/job_request.h"
 #include "api/words/word_table.h"
 #include "renderer/description/scene_description.h"
 #include "renderer/description/settings.h"
 
-#include <concepts>
-#include <type_traits>
-
 namespace api {
-
-// T, or T seen by a visitor that only looks.
-template <typename X, typename T>
-concept Sees = std::same_as<std::remove_const_t<X>, T>;
 
 template <typename V, Sees<renderer::CameraDescription> X>
 void fields(V& v, X& camera)
@@ -36,24 +31,6 @@ void fields(V& v, X& camera)
     v.number("fov_deg", camera.fov_deg, kFieldOfView, "vertical field of view, degrees");
     v.unbuilt({"lens_radius", "focus_distance"}, "the camera is a pinhole: leave it out");
     v.unbuilt({"height"}, "it belongs to orthographic cameras; available: perspective");
-}
-
-template <typename V, Sees<renderer::DiffuseMaterial> X>
-void fields(V& v, X& material)
-{
-    v.color("color", material.color, kReflectance, "share of the light that is scattered");
-    v.unbuilt({"normal_map", "two_sided"}, "leave it out");
-}
-
-template <typename V, Sees<renderer::PhongMaterial> X>
-void fields(V& v, X& material)
-{
-    v.color("diffuse", material.diffuse, kReflectance, "k_d");
-    v.color("specular", material.specular, kReflectance, "k_s");
-    v.number("shininess", material.shininess, kShininess, "exponent n of the highlight");
-    v.color("ambient", material.ambient, kRadiometric, "radiance added whatever the light, W/(m^2 sr)");
-    v.word("form", material.form, "classic: as Phong wrote it; normalized: conserves energy");
-    v.unbuilt({"normal_map", "two_sided"}, "leave it out");
 }
 
 template <typename V, Sees<renderer::MeshShape> X>

@@ -32,6 +32,10 @@ inline constexpr Range kReflectance{0, 1};
 // Radiance, intensity, irradiance: sums of very many samples stay floats.
 inline constexpr Range kRadiometric{0, 1e30};
 inline constexpr Range kShininess{0, 1e6};
+inline constexpr Range kShare{0, 1};
+inline constexpr Range kIor{1e-3, 1e3};
+inline constexpr Range kExtinction{0, 1e3};
+inline constexpr Range kAbsorption{0, 1e9}; // 1/m: black within a nanometre
 inline constexpr Range kFieldOfView{0, 180, true, true};
 inline constexpr Range kInnerAngle{0, 180};
 inline constexpr Range kOuterAngle{0, 180, true};
@@ -40,6 +44,7 @@ inline constexpr Range kExposure{-100, 100};
 inline constexpr Range kSeconds{0, 1e7, true};
 
 inline constexpr WholeRange kPriority{0, 100};
+inline constexpr WholeRange kGlassPriority{0, 1000};
 inline constexpr WholeRange kSeed{0, (std::uint64_t(1) << 53) - 1}; // what every JSON reader keeps exactly
 inline constexpr WholeRange kThreads{0, 1024};
 inline constexpr WholeRange kTile{1, 4096};

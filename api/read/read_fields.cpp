@@ -160,7 +160,7 @@ const Word* ReadFields::word_at(std::string pointer, const std::string& text, Wo
 {
     const std::vector<std::string> available = names_of(words);
     const Word* word = find_word(words, text);
-    if (word && word->value != kNotBuilt) return word;
+    if (word && word->built()) return word;
     if (word)
         fault(std::move(pointer),
               "unsupported",

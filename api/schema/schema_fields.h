@@ -127,9 +127,12 @@ public:
     static Json schema_of(const std::variant<Ts...>&)
     {
         Json any = Json::array();
-        (any.push_back(typed(schema_of(Ts{}),
-                             name_of(words_for<std::variant<Ts...>>(), kIndexIn<Ts, std::variant<Ts...>>))),
-         ...);
+        const auto add = [&any](const auto& alternative, int index) {
+            const WordTable words = words_for<std::variant<Ts...>>();
+            const std::string_view name = name_of(words, index);
+            if (find_word(words, name)->built()) any.push_back(typed(schema_of(alternative), name));
+        };
+        (add(Ts{}, kIndexIn<Ts, std::variant<Ts...>>), ...);
         return {{"oneOf", std::move(any)}};
     }
     // An object's members differ with its shape: one alternative each.

@@ -26,10 +26,10 @@ WordTable words_for<Material>()
     static constexpr std::array words{alternative<Material, renderer::DiffuseMaterial>("diffuse"),
                                       alternative<Material, renderer::PhongMaterial>("phong"),
                                       Word{"cook_torrance"},
-                                      Word{"mirror"},
-                                      Word{"glass"},
-                                      Word{"conductor"},
-                                      Word{"emitter"}};
+                                      described<Material, renderer::MirrorMaterial>("mirror"),
+                                      described<Material, renderer::GlassMaterial>("glass"),
+                                      described<Material, renderer::ConductorMaterial>("conductor"),
+                                      described<Material, renderer::EmitterMaterial>("emitter")};
     return words;
 }
 
@@ -178,7 +178,7 @@ std::vector<std::string> names_of(WordTable words)
 {
     std::vector<std::string> names;
     for (const Word& word : words)
-        if (word.value != kNotBuilt) names.emplace_back(word.name);
+        if (word.built()) names.emplace_back(word.name);
     return names;
 }
 

@@ -1,8 +1,12 @@
 #include "renderer/materials/bsdf.h"
 
+#include "renderer/materials/conductor.h"
+#include "renderer/materials/glass.h"
+#include "renderer/materials/phong.h"
 #include "renderer/math/transcendental.h"
+#include "renderer/sampling/warp.h"
 
-#include <algorithm>
+#include <type_traits>
 #include <variant>
 
 namespace renderer {
@@ -11,93 +15,211 @@ namespace {
 
 constexpr float kOneOverPi = static_cast<float>(1 / kPi);
 
-float strongest(Rgb c)
+Bsdf make(const DiffuseMaterial& m)
 {
-    return std::max({c.r, c.g, c.b});
-}
-
-Vec3f mirrored(Vec3f w)
-{
-    return {-w.x, -w.y, w.z};
-}
-
-// 1 - R.V without cancellation: half the squared distance of two unit vectors.
-double off_mirror(Vec3f wo, Vec3f wi)
-{
-    const Vec3d d = to_double(mirrored(wi)) - to_double(wo);
-    return 0.5 * dot(d, d);
-}
-
-// max(0, R.V)^n
-float lobe(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
-{
-    const double off = off_mirror(wo, wi);
-    return off < 1 ? static_cast<float>(power_of_cosine(off, bsdf.shininess)) : 0.0f;
-}
-
-Bsdf make_phong(const PhongMaterial& m)
-{
-    Bsdf bsdf{BsdfKind::phong_normalized, m.diffuse, m.specular, m.ambient, m.shininess, 0};
-    // Samples are shared in proportion to what each part reflects of light from everywhere.
-    float diffuse_power = strongest(m.diffuse), specular_power = strongest(m.specular);
-    if (m.form == PhongForm::classic) {
-        bsdf.kind = BsdfKind::phong_classic;
-        diffuse_power *= static_cast<float>(kPi);
-        specular_power *= static_cast<float>(2 * kPi / (m.shininess + 1));
-    }
-    const float all = diffuse_power + specular_power;
-    bsdf.lobe_share = all > 0 ? specular_power / all : 0;
+    Bsdf bsdf;
+    bsdf.diffuse = m.color.value;
     return bsdf;
+}
+
+Bsdf make(const PhongMaterial& m)
+{
+    return make_phong(m);
+}
+
+Bsdf make(const MirrorMaterial& m)
+{
+    return make_mirror(m);
+}
+
+Bsdf make(const GlassMaterial& m)
+{
+    return make_glass(m);
+}
+
+Bsdf make(const ConductorMaterial& m)
+{
+    return make_conductor(m);
+}
+
+Bsdf make(const EmitterMaterial& m)
+{
+    Bsdf bsdf;
+    bsdf.kind = BsdfKind::black;
+    bsdf.two_sided = m.two_sided;
+    bsdf.emission = m.radiance.value;
+    return bsdf;
+}
+
+// Drawn where a density is: weighed by it.
+BsdfSample weighed(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
+{
+    const BsdfValue value = evaluate(bsdf, wo, wi);
+    if (!(value.pdf > 0)) return {};
+    return {wi, value.f / value.pdf, value.pdf, false, transmits(bsdf) && wi.z < 0};
+}
+
+BsdfSample sample_mirror(const Bsdf& bsdf, Vec3f wo)
+{
+    if (!(wo.z > 0)) return {};
+    return {{-wo.x, -wo.y, wo.z}, mirror_reflectance(bsdf, wo), 1, true, false};
 }
 
 } // namespace
 
 Bsdf make_bsdf(const Material& material)
 {
-    if (const auto* const phong = std::get_if<PhongMaterial>(&material)) return make_phong(*phong);
-    Bsdf bsdf;
-    bsdf.diffuse = std::get<DiffuseMaterial>(material).color;
-    return bsdf;
+    return std::visit(
+        [](const auto& m) {
+            Bsdf bsdf = make(m);
+            if constexpr (requires { m.surface; }) bsdf.two_sided = m.surface.two_sided;
+            return bsdf;
+        },
+        material);
+}
+
+bool is_delta_only(const Bsdf& bsdf)
+{
+    switch (bsdf.kind) {
+    case BsdfKind::diffuse:
+    case BsdfKind::phong_classic:
+    case BsdfKind::phong_normalized:
+    case BsdfKind::rough_conductor:
+        return false;
+    case BsdfKind::rough_glass:
+        return passes_straight(bsdf);
+    case BsdfKind::mirror:
+    case BsdfKind::glass:
+    case BsdfKind::conductor:
+    case BsdfKind::black:
+        return true;
+    }
+    return true;
+}
+
+bool transmits(const Bsdf& bsdf)
+{
+    return bsdf.kind == BsdfKind::glass || bsdf.kind == BsdfKind::rough_glass;
 }
 
 Rgb eval(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
 {
-    if (!(wi.z > 0)) return {};
     switch (bsdf.kind) {
     case BsdfKind::diffuse:
-        return bsdf.diffuse * (wi.z * kOneOverPi);
+        return wi.z > 0 ? bsdf.diffuse * (wi.z * kOneOverPi) : Rgb{};
     case BsdfKind::phong_classic:
-        return bsdf.diffuse * wi.z + bsdf.specular * lobe(bsdf, wo, wi);
-    case BsdfKind::phong_normalized: {
-        const float norm = static_cast<float>((bsdf.shininess + 2) / (2 * kPi));
-        return (bsdf.diffuse * kOneOverPi + bsdf.specular * (norm * lobe(bsdf, wo, wi))) * wi.z;
-    }
+    case BsdfKind::phong_normalized:
+        return wi.z > 0 ? eval_phong(bsdf, wo, wi) : Rgb{};
+    case BsdfKind::rough_glass:
+        return evaluate_glass(bsdf, wo, wi).f;
+    case BsdfKind::rough_conductor:
+        return evaluate_conductor(bsdf, wo, wi).f;
+    case BsdfKind::mirror:
+    case BsdfKind::glass:
+    case BsdfKind::conductor:
+    case BsdfKind::black:
+        return {};
     }
     return {};
 }
 
 float pdf(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
 {
-    const float cosine_part = pdf_cosine_hemisphere(wi.z);
-    if (bsdf.lobe_share == 0) return cosine_part;
-    const auto lobe_part = static_cast<float>(pdf_power_lobe(off_mirror(wo, wi), bsdf.shininess));
-    return (1 - bsdf.lobe_share) * cosine_part + bsdf.lobe_share * lobe_part;
+    return evaluate(bsdf, wo, wi).pdf;
+}
+
+BsdfValue evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
+{
+    switch (bsdf.kind) {
+    case BsdfKind::diffuse:
+        return {eval(bsdf, wo, wi), pdf_cosine_hemisphere(wi.z)};
+    case BsdfKind::phong_classic:
+    case BsdfKind::phong_normalized:
+        return {eval(bsdf, wo, wi), pdf_phong(bsdf, wo, wi)};
+    case BsdfKind::rough_glass:
+        return evaluate_glass(bsdf, wo, wi);
+    case BsdfKind::rough_conductor:
+        return evaluate_conductor(bsdf, wo, wi);
+    case BsdfKind::mirror:
+    case BsdfKind::glass:
+    case BsdfKind::conductor:
+    case BsdfKind::black:
+        return {};
+    }
+    return {};
 }
 
 BsdfSample sample(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u)
 {
-    if (bsdf.kind == BsdfKind::diffuse) {
+    switch (bsdf.kind) {
+    case BsdfKind::diffuse: {
         const Vec3f wi = sample_cosine_hemisphere(u);
         // The cosine cancels: the weight is the colour, to the bit.
         if (!(wi.z > 0)) return {};
         return {wi, bsdf.diffuse, pdf_cosine_hemisphere(wi.z)};
     }
-    const Vec3f wi = u_lobe < bsdf.lobe_share
-                         ? Frame(mirrored(wo)).to_world(sample_power_lobe(u, bsdf.shininess))
-                         : sample_cosine_hemisphere(u);
-    const float density = pdf(bsdf, wo, wi);
-    if (!(density > 0)) return {};
-    return {wi, eval(bsdf, wo, wi) / density, density};
+    case BsdfKind::phong_classic:
+    case BsdfKind::phong_normalized:
+        return weighed(bsdf, wo, sample_phong(bsdf, wo, u_lobe, u));
+    case BsdfKind::mirror:
+    case BsdfKind::conductor:
+        return sample_mirror(bsdf, wo);
+    case BsdfKind::glass:
+        return sample_smooth_glass(bsdf, wo, u_lobe);
+    case BsdfKind::rough_glass:
+        if (passes_straight(bsdf)) return sample_smooth_glass(bsdf, wo, u_lobe);
+        return weighed(bsdf, wo, sample_rough_glass(bsdf, wo, u_lobe, u));
+    case BsdfKind::rough_conductor:
+        return weighed(bsdf, wo, sample_conductor(bsdf, wo, u));
+    case BsdfKind::black:
+        return {};
+    }
+    return {};
+}
+
+DeltaLobes delta_lobes(const Bsdf& bsdf, Vec3f wo)
+{
+    switch (bsdf.kind) {
+    case BsdfKind::mirror:
+    case BsdfKind::conductor: {
+        DeltaLobes out;
+        const BsdfSample only = sample_mirror(bsdf, wo);
+        if (only.pdf > 0) out.lobes[out.count++] = {only.wi, only.weight, false};
+        return out;
+    }
+    case BsdfKind::glass:
+    case BsdfKind::rough_glass:
+        return delta_lobes_of_glass(bsdf, wo);
+    case BsdfKind::diffuse:
+    case BsdfKind::phong_classic:
+    case BsdfKind::phong_normalized:
+    case BsdfKind::rough_conductor:
+    case BsdfKind::black:
+        return {};
+    }
+    return {};
+}
+
+Rgb albedo(const Bsdf& bsdf, Vec3f wo)
+{
+    switch (bsdf.kind) {
+    case BsdfKind::diffuse:
+        return bsdf.diffuse;
+    case BsdfKind::phong_classic:
+    case BsdfKind::phong_normalized:
+        return albedo_phong(bsdf);
+    case BsdfKind::mirror:
+        return bsdf.specular;
+    case BsdfKind::glass:
+    case BsdfKind::rough_glass:
+        return {1, 1, 1}; // what is not reflected passes
+    case BsdfKind::conductor:
+    case BsdfKind::rough_conductor:
+        return albedo_conductor(bsdf, wo);
+    case BsdfKind::black:
+        return {};
+    }
+    return {};
 }
 
 } // namespace renderer

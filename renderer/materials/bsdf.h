@@ -1,47 +1,101 @@
 // Bsdf: how a surface scatters light: a closed set, as eval / sample / pdf.
 //
-// Frame   local: z is the shading normal, on the viewer's side (every material is two-sided); wo and wi are
-//         unit and point away from the surface.
-// Units   eval is f(wo, wi) |cos(wi)| in 1/sr; pdfs per steradian.
-// Source  diffuse: Lambert. phong_normalized: E. Lafortune, Y. Willems, "Using the Modified Phong Reflectance
-//         Model for Physically Based Rendering", 1994: f = kd/pi + ks (n+2)/(2 pi) (R.V)^n, reciprocal, and
-//         no more energy out than in while kd + ks <= 1. phong_classic: B. Phong, 1975, as it is usually
-//         programmed: kd (N.L) + ks (R.V)^n times the irradiance on a facing surface, without 1/pi; neither
-//         reciprocal nor conserving. R = 2 (N.L) N - L; both dot products clamped at 0; nothing where N.L <=
-//         0.
+// Frame   local: z is the shading normal, on the viewer's side; wo and wi are unit and point away from the surface. wi.z < 0
+//         is light from the other side, which only glass lets through.
+// Units   eval is f(wo, wi) |cos(wi)| in 1/sr; pdfs per steradian. Radiance is what is carried: transmission has
+//         its factor 1 / eta^2 (E. Veach, thesis, 1997, 5.2). Directions that a surface reflects or refracts without scattering
+//         (delta lobes) have no eval and no pdf; sample and delta_lobes give them.
+// Source  diffuse: Lambert. phong.h, microfacet.h, conductor.h, glass.h name theirs.
 // Cost    a switch, no virtual call, no allocation.
 #pragma once
 
 #include "renderer/color/rgb.h"
-#include "renderer/description/scene_description.h"
-#include "renderer/sampling/warp.h"
+#include "renderer/description/material.h"
+#include "renderer/math/vec3.h"
+#include "renderer/sampling/sampler.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace renderer {
 
-enum class BsdfKind : std::uint8_t { diffuse, phong_classic, phong_normalized };
+enum class BsdfKind : std::uint8_t {
+    diffuse,
+    phong_classic,
+    phong_normalized,
+    mirror,
+    glass,
+    rough_glass,
+    conductor,
+    rough_conductor,
+    black // an emitter, or a one-sided surface seen from behind
+};
+
+// What fills a body of glass.
+struct GlassMedium {
+    float ior = 1.5f;
+    std::uint32_t priority = 0;
+    Rgb absorption{}; // 1/m
+    friend bool operator==(const GlassMedium&, const GlassMedium&) = default;
+};
 
 struct Bsdf {
     BsdfKind kind = BsdfKind::diffuse;
+    bool two_sided = true; // else seen from behind it is black
+    float lobe_share = 0;  // Phong: of the samples, drawn around the mirror direction
+    float alpha = 0;       // of the microfacets: width of their slopes
+    float eta =
+        1; // glass: index behind the surface over index on wo's side; make_bsdf's is seen from vacuum outside
     Rgb diffuse{0.5f, 0.5f, 0.5f};
-    Rgb specular{};
-    Rgb ambient{}; // radiance added whatever the light
+    Rgb specular{}; // Phong: k_s; mirror: its colour; conductor: eta
+    Rgb k{};        // conductor
+    Rgb ambient{};  // radiance added whatever the light
+    Rgb emission{}; // radiance that an emitter sends out, from its front or both sides
     double shininess = 0;
-    float lobe_share = 0; // of the samples, drawn around the mirror direction
+    GlassMedium medium{};
 };
 
+// From the plain values, without textures.
 Bsdf make_bsdf(const Material& material);
+
+// Nothing that light could be sent to: eval and pdf are 0 everywhere.
+bool is_delta_only(const Bsdf& bsdf);
+// Some light passes to the other side.
+bool transmits(const Bsdf& bsdf);
 
 struct BsdfSample {
     Vec3f wi{};
-    Rgb weight{};  // eval / pdf; black below the horizon
-    float pdf = 0; // 0: no direction was drawn
+    Rgb weight{};  // eval / pdf; of a delta lobe its share of the light over its probability
+    float pdf = 0; // of a delta lobe its probability; 0: no direction was drawn
+    bool is_delta = false;
+    bool is_transmission = false;
 };
 
 Rgb eval(const Bsdf& bsdf, Vec3f wo, Vec3f wi);
 float pdf(const Bsdf& bsdf, Vec3f wo, Vec3f wi);
+// Both at once, for less than twice the work.
+struct BsdfValue {
+    Rgb f{};
+    float pdf = 0;
+};
+BsdfValue evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi);
 // u_lobe chooses what to draw from, u where.
 BsdfSample sample(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u);
+
+// Every direction that is reflected or refracted without scattering, each with its whole share: for recursion that follows all.
+struct DeltaLobe {
+    Vec3f wi{};
+    Rgb weight{};
+    bool is_transmission = false;
+};
+struct DeltaLobes {
+    std::array<DeltaLobe, 2> lobes;
+    std::size_t count = 0;
+};
+DeltaLobes delta_lobes(const Bsdf& bsdf, Vec3f wo);
+
+// Share of the light from everywhere that goes to wo, both sides together; where no closed form is known an estimate.
+Rgb albedo(const Bsdf& bsdf, Vec3f wo);
 
 } // namespace renderer

@@ -1,5 +1,7 @@
 #include "renderer/plan/choices.h"
 
+#include "renderer/plan/material_choices.h"
+
 #include <cstdio>
 #include <set>
 #include <string>
@@ -14,7 +16,7 @@ struct Census {
     std::size_t objects = 0; // in all
     std::size_t mesh_objects = 0, rectangles = 0, disks = 0, boxes = 0, spheres = 0;
     std::size_t smooth = 0, flat_with_normals = 0, textured_meshes = 0;
-    std::size_t diffuse = 0, phong_classic = 0, phong_normalized = 0, default_material = 0;
+    MaterialCensus materials;
     std::set<std::uint32_t> shown_meshes;                            // with materials of their own
     std::size_t emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
     std::size_t point = 0, spot = 0, directional = 0;
@@ -25,14 +27,6 @@ template <typename T, typename Variant>
 std::size_t is_a(const Variant& value)
 {
     return std::holds_alternative<T>(value) ? 1u : 0u;
-}
-
-void count_material(Census& c, const Material& material)
-{
-    if (const auto* const phong = std::get_if<PhongMaterial>(&material))
-        ++(phong->form == PhongForm::classic ? c.phong_classic : c.phong_normalized);
-    else
-        ++c.diffuse;
 }
 
 void count_object(Census& c,
@@ -50,9 +44,9 @@ void count_object(Census& c,
     c.disks += is_a<DiskShape>(object.shape);
     c.boxes += is_a<BoxShape>(object.shape);
     c.spheres += is_a<SphereShape>(object.shape);
-    if (object.material) return count_material(c, scene.materials[*object.material].material);
+    if (object.material) return count_material(c.materials, scene.materials[*object.material].material);
     if (facts == nullptr || !facts->has_materials) {
-        ++c.default_material;
+        ++c.materials.default_diffuse;
         return;
     }
     if (facts->has_textures) ++c.textured_meshes;
@@ -62,7 +56,7 @@ void count_object(Census& c,
         c.metal += facts->metal_materials;
         c.rough += facts->rough_materials;
     }
-    ++(facts->has_specular ? c.phong_normalized : c.diffuse);
+    ++(facts->has_specular ? c.materials.phong_normalized : c.materials.diffuse);
 }
 
 Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshes)
@@ -181,17 +175,7 @@ private:
             skip("smooth_normals",
                  c_.flat_with_normals != 0 ? "every object with vertex normals is asked to be flat"
                                            : "no mesh has vertex normals");
-        use_if(c_.diffuse, "diffuse", of(c_.diffuse, "object") + " of diffuse materials");
-        use_if(c_.default_material,
-               "default_diffuse",
-               of(c_.default_material, "object") + " without a material: diffuse 0.5");
-        use_if(c_.phong_normalized,
-               "phong_normalized",
-               of(c_.phong_normalized, "object") + " of energy-conserving Phong");
-        use_if(c_.phong_classic,
-               "phong_classic",
-               of(c_.phong_classic, "object") +
-                   " of classic Phong, which may reflect more light than it gets");
+        explain_materials(c_.materials, out_);
         left_out_of_meshes();
     }
 

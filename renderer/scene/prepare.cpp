@@ -27,8 +27,8 @@ Material from_mesh(const MeshMaterial& m)
     const Rgb sum = m.diffuse + m.specular;
     const float scale = 1 / std::max({1.0f, sum.r, sum.g, sum.b});
     PhongMaterial phong;
-    phong.diffuse = m.diffuse * scale;
-    phong.specular = m.specular * scale;
+    phong.diffuse.value = m.diffuse * scale;
+    phong.specular.value = m.specular * scale;
     phong.shininess = static_cast<double>(m.shininess);
     return phong;
 }

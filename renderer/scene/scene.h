@@ -16,6 +16,7 @@
 #include "renderer/lights/light_sample.h"
 #include "renderer/materials/bsdf.h"
 #include "renderer/plan/plan.h"
+#include "renderer/sampling/warp.h"
 
 #include <cstdint>
 #include <memory>

@@ -77,7 +77,7 @@ TEST(WordTables, HaveAWordForEachAlternative)
 
 TEST(WordTables, TellBuiltFromKnown)
 {
-    EXPECT_EQ(api::find_word(api::words_for<renderer::Material>(), "glass")->value, api::kNotBuilt);
+    EXPECT_FALSE(api::find_word(api::words_for<renderer::Material>(), "glass")->built());
     EXPECT_EQ(api::find_word(api::words_for<renderer::Material>(), "wood"), nullptr);
     const std::vector<std::string> built{"diffuse", "phong"};
     EXPECT_EQ(api::names_of(api::words_for<renderer::Material>()), built);

@@ -81,8 +81,8 @@ private:
     renderer::Material material()
     {
         if (coin()) return renderer::DiffuseMaterial{color(1)};
-        return renderer::PhongMaterial{color(1),
-                                       color(1),
+        return renderer::PhongMaterial{{color(1)},
+                                       {color(1)},
                                        unit() * 1000,
                                        color(1e10f),
                                        coin() ? renderer::PhongForm::classic

@@ -1,5 +1,7 @@
 #include "renderer/materials/bsdf.h"
 #include "renderer/math/transcendental.h"
+#include "renderer/sampling/warp.h"
+#include "tests/renderer/materials/every_bsdf.h"
 #include "tests/support/chi_square.h"
 
 #include <gtest/gtest.h>
@@ -10,34 +12,15 @@
 using renderer::Bsdf;
 using renderer::BsdfSample;
 using renderer::PhongForm;
-using renderer::PhongMaterial;
 using renderer::PixelSampler;
 using renderer::Rgb;
 using renderer::Vec3f;
+using tests::at_angle;
+using tests::diffuse;
+using tests::NamedBsdf;
+using tests::phong;
 
 namespace {
-
-Vec3f at_angle(double degrees, double phi_deg = 20)
-{
-    const auto [s, c] = renderer::sin_cos_deg(degrees);
-    const auto [sp, cp] = renderer::sin_cos_deg(phi_deg);
-    return renderer::to_float({s * cp, s * sp, c});
-}
-
-Bsdf phong(double shininess, PhongForm form, float kd = 0.4f, float ks = 0.6f)
-{
-    PhongMaterial m;
-    m.diffuse = {kd, kd, kd};
-    m.specular = {ks, ks, ks};
-    m.shininess = shininess;
-    m.form = form;
-    return make_bsdf(m);
-}
-
-Bsdf diffuse(float albedo)
-{
-    return make_bsdf(renderer::DiffuseMaterial{{albedo, albedo, albedo}});
-}
 
 // Reflected share of light from everywhere, by stratified quadrature around the lobe or the normal.
 double albedo(const Bsdf& bsdf, Vec3f wo, int n)
@@ -54,21 +37,13 @@ double albedo(const Bsdf& bsdf, Vec3f wo, int n)
     return sum / n;
 }
 
-std::vector<Bsdf> every_bsdf()
-{
-    std::vector<Bsdf> all{diffuse(0.7f)};
-    for (const double n : {0.0, 1.0, 30.0, 500.0}) {
-        all.push_back(phong(n, PhongForm::normalized));
-        all.push_back(phong(n, PhongForm::classic));
-    }
-    return all;
-}
-
 } // namespace
 
 TEST(Bsdf, SamplesAsItsDensitySays)
 {
-    for (const Bsdf& bsdf : every_bsdf())
+    std::vector<NamedBsdf> wide = tests::phong_bsdfs();
+    wide.push_back({"diffuse", diffuse(0.7f)});
+    for (const auto& [name, bsdf] : wide)
         for (const double angle : {0.0, 45.0, 80.0, 89.9}) {
             const Vec3f wo = at_angle(angle);
             const auto draw = [&](std::size_t i) {
@@ -82,24 +57,69 @@ TEST(Bsdf, SamplesAsItsDensitySays)
                 [&](std::size_t i) { return lobe.to_local(draw(i)); },
                 [&](Vec3f w) { return static_cast<double>(pdf(bsdf, wo, lobe.to_world(w))); },
                 40);
-            EXPECT_NEAR(result.expected_share, 1, 4e-3) << bsdf.shininess << " at " << angle;
+            EXPECT_NEAR(result.expected_share, 1, 4e-3) << name << " at " << angle;
             EXPECT_GT(result.p_value, 0.01 / 36)
-                << bsdf.shininess << " at " << angle << ": " << result.statistic << " for " << result.degrees;
+                << name << " at " << angle << ": " << result.statistic << " for " << result.degrees;
         }
 }
 
 TEST(Bsdf, WeighsASampleByEvalOverPdf)
 {
-    for (const Bsdf& bsdf : every_bsdf())
+    for (const auto& [name, bsdf] : tests::every_bsdf())
         for (std::uint32_t i = 0; i < 2000; ++i) {
             const PixelSampler sampler(4, i, 9);
             const Vec3f wo = at_angle(i % 90);
             const BsdfSample draw = sample(bsdf, wo, sampler.sample_1d(0, 0), sampler.sample_2d(0, 1));
-            if (!(draw.pdf > 0)) continue;
+            if (!(draw.pdf > 0) || draw.is_delta) continue;
             const float want = eval(bsdf, wo, draw.wi).r / pdf(bsdf, wo, draw.wi);
-            ASSERT_NEAR(draw.weight.r, want, 1e-5f * want);
-            ASSERT_FLOAT_EQ(draw.pdf, pdf(bsdf, wo, draw.wi));
+            ASSERT_NEAR(draw.weight.r, want, 1e-5f * want) << name;
+            ASSERT_FLOAT_EQ(draw.pdf, pdf(bsdf, wo, draw.wi)) << name;
+            ASSERT_NEAR(length(draw.wi), 1, 1e-6) << name;
         }
+}
+
+TEST(Bsdf, GivesDeltaLobesThatAddUpToWhatIsDrawn)
+{
+    for (const auto& [name, bsdf] : tests::every_bsdf())
+        for (const double angle : {0.0, 30.0, 60.0, 89.0, 89.99}) {
+            const Vec3f wo = at_angle(angle);
+            const renderer::DeltaLobes all = delta_lobes(bsdf, wo);
+            Rgb drawn[2] = {};
+            constexpr int kDraws = 4096;
+            for (int i = 0; i < kDraws; ++i) {
+                const float u_lobe = (static_cast<float>(i) + 0.5f) / kDraws;
+                const BsdfSample draw = sample(bsdf, wo, u_lobe, {0.3f, 0.6f});
+                if (!draw.is_delta) continue;
+                ASSERT_TRUE(draw.pdf > 0 && draw.pdf <= 1) << name;
+                ASSERT_EQ(draw.is_transmission, draw.wi.z < 0) << name;
+                bool found = false;
+                for (std::size_t k = 0; k < all.count; ++k)
+                    if (all.lobes[k].wi == draw.wi) {
+                        found = true;
+                        drawn[k] += draw.weight / kDraws;
+                    }
+                ASSERT_TRUE(found) << name << " at " << angle;
+            }
+            for (std::size_t k = 0; k < all.count; ++k)
+                EXPECT_NEAR(
+                    drawn[k].r / all.lobes[k].weight.r, 1, 1e-3 / std::min(1e-1f, all.lobes[k].weight.r))
+                    << name << " at " << angle << ", lobe " << k;
+        }
+}
+
+TEST(Bsdf, HasNoEvalAndNoPdfWhereItIsDeltaOnly)
+{
+    for (const auto& [name, bsdf] : tests::delta_bsdfs()) {
+        EXPECT_TRUE(is_delta_only(bsdf)) << name;
+        const Vec3f wo = at_angle(30);
+        for (std::size_t k = 0; k < delta_lobes(bsdf, wo).count; ++k) {
+            EXPECT_EQ(eval(bsdf, wo, delta_lobes(bsdf, wo).lobes[k].wi), Rgb{}) << name;
+            EXPECT_EQ(pdf(bsdf, wo, delta_lobes(bsdf, wo).lobes[k].wi), 0) << name;
+        }
+    }
+    for (const double roughness : {1e-3, 0.5})
+        for (const auto& [name, bsdf] : tests::rough_bsdfs(roughness))
+            EXPECT_FALSE(is_delta_only(bsdf)) << name;
 }
 
 TEST(Diffuse, ReflectsExactlyItsColour)
@@ -167,16 +187,24 @@ TEST(PhongClassic, IsTheFormulaWithItsClamps)
 
 TEST(Bsdf, IsBlackAtAndBelowTheHorizonAndFiniteAtGrazing)
 {
-    for (const Bsdf& bsdf : every_bsdf()) {
-        EXPECT_EQ(eval(bsdf, at_angle(30), {1, 0, 0}), Rgb{});
-        EXPECT_EQ(eval(bsdf, at_angle(30), {1, 0, -0.0f}), Rgb{});
-        EXPECT_EQ(eval(bsdf, at_angle(30), at_angle(120)), Rgb{});
-        for (const float z : {1e-3f, 1e-7f, 0.0f, -0.0f, -1e-3f}) {
+    for (const auto& [name, bsdf] : tests::every_bsdf()) {
+        EXPECT_EQ(eval(bsdf, at_angle(30), {1, 0, 0}), Rgb{}) << name;
+        EXPECT_EQ(eval(bsdf, at_angle(30), {1, 0, -0.0f}), Rgb{}) << name;
+        if (!transmits(bsdf)) {
+            EXPECT_EQ(eval(bsdf, at_angle(30), at_angle(120)), Rgb{}) << name;
+        }
+        for (const float z : {1e-3f, 1e-7f, 0.0f, -0.0f, -1e-3f, -1.0f}) {
             const Vec3f wo = normalize(Vec3f{1, 0, z});
             for (std::uint32_t i = 0; i < 500; ++i) {
                 const PixelSampler sampler(5, i, 1);
                 const BsdfSample draw = sample(bsdf, wo, sampler.sample_1d(0, 0), sampler.sample_2d(0, 1));
-                ASSERT_TRUE(std::isfinite(draw.weight.r) && draw.weight.r >= 0 && std::isfinite(draw.pdf));
+                ASSERT_TRUE(std::isfinite(draw.weight.r) && draw.weight.r >= 0 && std::isfinite(draw.pdf))
+                    << name << " at " << z;
+                for (const float below : {1e-3f, 1e-7f, 0.0f, -0.0f, -1e-3f}) {
+                    const renderer::BsdfValue value = evaluate(bsdf, wo, normalize(Vec3f{-1, 0.1f, below}));
+                    ASSERT_TRUE(std::isfinite(value.f.r) && value.f.r >= 0 && std::isfinite(value.pdf))
+                        << name << " at " << z;
+                }
             }
         }
     }

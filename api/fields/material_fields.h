@@ -1,0 +1,72 @@
+// The members of materials: see job_fields.h.
+#pragma once
+
+#include "api/fields/ranges.h"
+#include "api/fields/sees.h"
+#include "renderer/description/material.h"
+
+namespace api {
+
+template <typename V, Sees<renderer::SurfaceOptions> X>
+void surface_fields(V& v, X&)
+{
+    v.unbuilt({"normal_map", "two_sided"}, "leave it out");
+}
+
+template <typename V, Sees<renderer::DiffuseMaterial> X>
+void fields(V& v, X& material)
+{
+    v.textured_color("color", material.color, kReflectance, "share of the light that is scattered");
+    surface_fields(v, material.surface);
+}
+
+template <typename V, Sees<renderer::PhongMaterial> X>
+void fields(V& v, X& material)
+{
+    v.textured_color("diffuse", material.diffuse, kReflectance, "k_d");
+    v.textured_color("specular", material.specular, kReflectance, "k_s");
+    v.number("shininess", material.shininess, kShininess, "exponent n of the highlight");
+    v.color("ambient", material.ambient, kRadiometric, "radiance added whatever the light, W/(m^2 sr)");
+    v.word("form", material.form, "classic: as Phong wrote it; normalized: conserves energy");
+    surface_fields(v, material.surface);
+}
+
+template <typename V, Sees<renderer::MirrorMaterial> X>
+void fields(V& v, X& material)
+{
+    v.textured_color("color", material.color, kReflectance, "share of the light that is reflected");
+    surface_fields(v, material.surface);
+}
+
+template <typename V, Sees<renderer::GlassMaterial> X>
+void fields(V& v, X& material)
+{
+    v.number("ior", material.ior, kIor, "index of refraction of what is within");
+    v.textured_number("roughness", material.roughness, kShare, "0: clear; the facets' alpha is its square");
+    v.color("absorption",
+            material.absorption,
+            kAbsorption,
+            "1/m: exp(-absorption * way) is left of light within");
+    v.integer(
+        "priority", material.priority, kGlassPriority, "where bodies overlap the highest fills the place");
+    v.unbuilt({"normal_map"}, "leave it out");
+}
+
+template <typename V, Sees<renderer::ConductorMaterial> X>
+void fields(V& v, X& material)
+{
+    v.color("eta", material.eta, kIor, "real part of the index of refraction");
+    v.color("k", material.k, kExtinction, "imaginary part of the index of refraction");
+    v.textured_number(
+        "roughness", material.roughness, kShare, "0: a mirror; the facets' alpha is its square");
+    surface_fields(v, material.surface);
+}
+
+template <typename V, Sees<renderer::EmitterMaterial> X>
+void fields(V& v, X& material)
+{
+    v.textured_color("radiance", material.radiance, kRadiometric, "W/(m^2 sr)");
+    v.boolean("two_sided", material.two_sided, "false: only the front shines");
+}
+
+} // namespace api
