@@ -1,0 +1,32 @@
+// ColumnTable: the columns of air from any point to the top, by look-up.
+//
+// Rows are altitudes, dense near the ground; along a row the distance to the top, as a share between that of the
+// vertical and that of the horizon, stretched towards the horizon. Between entries it is a cubic.
+// Source  the mapping of Bruneton, Neyret 2008, section 4, on columns instead of transmittances: those are smooth.
+// Errors  transmittance within 1e-3 relative at earth's coefficients, 5e-3 along rays that graze the ozone's peak.
+// Threads const: any number at once.
+#pragma once
+
+#include "renderer/parallel/thread_pool.h"
+#include "renderer/sky/air.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace renderer {
+
+class ColumnTable {
+public:
+    ColumnTable(const Air& air, ThreadPool& pool);
+
+    // Of a point that sees the sky at that angle: mu is cut to the horizon.
+    [[nodiscard]] Columns at(double altitude, double mu) const;
+
+private:
+    static constexpr std::size_t kRows = 64, kPlaces = 128;
+
+    double radius_, height_;
+    std::vector<Columns> columns_; // [row][place]
+};
+
+} // namespace renderer

@@ -1,0 +1,65 @@
+#include "renderer/sky/column_table.h"
+#include "renderer/sky/optical_depth.h"
+#include "tests/support/random_numbers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace renderer;
+
+namespace {
+
+struct TableError {
+    double worst = 0, rms = 0;
+};
+
+// Of optical depths below 5, beyond which less than a hundredth passes; half of the directions are near the horizon.
+TableError error_of(AtmospherePreset preset)
+{
+    const Air air = make_air(atmosphere_preset(preset));
+    ThreadPool pool(2);
+    const ColumnTable table(air, pool);
+    tests::RandomNumbers random(1);
+    TableError error;
+    std::size_t count = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const double share = random.next(), t = random.next();
+        const double altitude = air.height_m * share * share, r = air.radius_m + altitude;
+        const double horizon = -std::sqrt(altitude * (2 * air.radius_m + altitude)) / r;
+        const double mu = horizon + (1 - horizon) * t * t * t;
+        const WayOut exact = columns_to_top(air, altitude, mu);
+        if (exact.blocked) continue;
+        for (std::size_t w = 0; w < air.wavelengths; ++w) {
+            const double depth = air.optical_depth(w, exact.columns);
+            if (depth > 5) continue;
+            const double off = std::abs(air.optical_depth(w, table.at(altitude, mu)) - depth);
+            error.worst = std::max(error.worst, off);
+            error.rms += off * off;
+            ++count;
+        }
+    }
+    error.rms = std::sqrt(error.rms / static_cast<double>(count));
+    return error;
+}
+
+} // namespace
+
+TEST(ColumnTable, GivesTransmittancesToAThousandth)
+{
+    EXPECT_LT(error_of(AtmospherePreset::reference_s).worst, 1e-3);
+    const TableError earth = error_of(AtmospherePreset::earth);
+    EXPECT_LT(earth.rms, 2e-4);
+    EXPECT_LT(earth.worst, 5e-3); // rays that graze the ozone's peak, where its density has a kink
+}
+
+TEST(ColumnTable, EndsWithTheAir)
+{
+    const Air air = make_air(atmosphere_preset(AtmospherePreset::earth));
+    ThreadPool pool(1);
+    const ColumnTable table(air, pool);
+    EXPECT_EQ(table.at(60'000, 0.5).rayleigh, 0);
+    EXPECT_NEAR(table.at(0, 1).ozone, 15'000, 1e-6);
+    EXPECT_TRUE(std::isfinite(table.at(0, -1).rayleigh)); // cut to the horizon
+}
