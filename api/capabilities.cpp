@@ -31,7 +31,7 @@ std::vector<std::string> shapes()
 
 Json models_json()
 {
-    return {{"cameras", names_of(camera_words())},
+    return {{"cameras", names_of(words_for<renderer::Projection>())},
             {"shapes", shapes()},
             {"materials", names_of(words_for<renderer::Material>())},
             {"phong_forms", names_of(words_for<renderer::PhongForm>())},

@@ -1,5 +1,6 @@
 #include "api/job_view.h"
 #include "api/json/json.h"
+#include "api/words/word_table.h"
 
 #include <stdexcept>
 
@@ -46,6 +47,18 @@ Json accuracy_json(const renderer::AccuracyReport& accuracy, const renderer::Qua
     return json;
 }
 
+Json meter_json(const renderer::MeterReading& meter)
+{
+    const auto color = [](renderer::Rgb c) {
+        return Json::array({shortest_double(c.r), shortest_double(c.g), shortest_double(c.b)});
+    };
+    return {
+        {"quantity", api::name_of(words_for<renderer::MeterQuantity>(), static_cast<int>(meter.quantity))},
+        {"value", color(meter.value)},
+        {"standard_error", color(meter.standard_error)},
+        {"replicates", meter.replicates}};
+}
+
 } // namespace
 
 std::string write_report(const renderer::RenderReport& report,
@@ -57,7 +70,7 @@ std::string write_report(const renderer::RenderReport& report,
     const renderer::NumericsReport& numerics = report.numerics;
     const renderer::TimingReport& timing = report.timing;
     const renderer::GeometryReport& geometry = report.geometry;
-    const Json json{
+    Json json{
         {"job_id", job_id},
         {"render_key", render_key},
         {"accuracy", accuracy_json(report.accuracy, requested)},
@@ -66,18 +79,22 @@ std::string write_report(const renderer::RenderReport& report,
          {{"non_finite_samples", numerics.non_finite_samples},
           {"degenerate_triangles", numerics.degenerate_triangles},
           {"coordinate_ratio", numerics.coordinate_ratio},
-          {"precision", numerics.precision}}},
+          {"precision", numerics.precision},
+          {"clamped", numerics.clamped},
+          {"cut_weight", numerics.cut_weight}}},
         {"timing",
          {{"prepare_s", timing.prepare_s},
           {"render_s", timing.render_s},
           {"camera_rays", timing.camera_rays},
           {"shadow_rays", timing.shadow_rays},
+          {"bounce_rays", timing.bounce_rays},
           {"threads", report.threads}}},
         {"geometry",
          {{"triangles", geometry.triangles},
           {"instances", geometry.instances},
           {"bvh_bytes", geometry.bvh_bytes}}},
         {"notes", report.notes}};
+    if (report.meter) json["meter"] = meter_json(*report.meter);
     return text_of(json, pretty);
 }
 

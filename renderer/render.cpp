@@ -1,5 +1,6 @@
 #include "renderer/render.h"
 
+#include "renderer/meter.h"
 #include "renderer/ordered_merge.h"
 #include "renderer/plan/budget.h"
 #include "renderer/tile_grid.h"
@@ -96,7 +97,8 @@ public:
             run_samples({0, target_});
         if (stop_.stop_requested()) return std::nullopt;
         teller_.tell(film_.samples, film_.samples, true);
-        return RenderResult{std::move(film_), report(reason)};
+        RenderReport told = report(reason); // before the film is given away
+        return RenderResult{std::move(film_), std::move(told)};
     }
 
 private:
@@ -186,6 +188,11 @@ private:
         r.timing.render_s = seconds_since(start_);
         r.timing.camera_rays = tally_.camera_rays;
         r.timing.shadow_rays = tally_.shadow_rays;
+        r.timing.bounce_rays = tally_.bounce_rays;
+        r.numerics.clamped = tally_.clamped;
+        if (tally_.camera_rays != 0)
+            r.numerics.cut_weight = tally_.cut_weight / static_cast<double>(tally_.camera_rays);
+        if (scene_.camera().is_meter()) r.meter = read_meter(film_, scene_.camera().quantity());
         r.geometry = scene_.geometry();
         const unsigned asked = settings_.acceleration.threads;
         r.threads = asked == 0 ? pool_.size() : std::min(asked, pool_.size());

@@ -1,5 +1,10 @@
 #include "renderer/trace.h"
 
+#include "renderer/integrators/direct.h"
+#include "renderer/integrators/path.h"
+#include "renderer/integrators/probes.h"
+#include "renderer/integrators/whitted.h"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -32,9 +37,13 @@ public:
              std::size_t pixel)
     {
         const Sample2 jitter = sampler.sample_2d(number, static_cast<std::uint32_t>(Dimension::pixel));
-        const Vec3d direction =
-            scene_.camera().direction(x + static_cast<double>(jitter.u0), y + static_cast<double>(jitter.u1));
-        samples_[count_] = {Ray{scene_.camera().position(), direction}, &sampler, number};
+        const Camera& camera = scene_.camera();
+        const Sample2 lens = camera.needs_lens()
+                                 ? sampler.sample_2d(number, static_cast<std::uint32_t>(Dimension::lens))
+                                 : Sample2{};
+        const Ray ray =
+            camera.ray(x + static_cast<double>(jitter.u0), y + static_cast<double>(jitter.u1), lens);
+        samples_[count_] = {ray, &sampler, number};
         pixels_[count_] = pixel;
         if (++count_ == kMostSamples) flush();
     }
@@ -59,10 +68,19 @@ public:
 private:
     void radiance_of(std::span<Rgb> found)
     {
-        switch (plan_.transport) {
-        case TransportType::automatic: // make_plan has chosen: direct is what there is
-        case TransportType::direct:
-            direct_radiance(scene_, {samples_, count_}, found, out_.tally, stop_);
+        const std::span<const CameraSample> samples(samples_, count_);
+        RayTally& tally = out_.tally;
+        switch (plan_.integrator) {
+        case Integrator::direct:
+            return direct_radiance(scene_, samples, found, tally, stop_);
+        case Integrator::whitted:
+            return whitted_radiance(scene_, plan_.max_depth, samples, found, tally, stop_);
+        case Integrator::path:
+            return path_radiance(scene_, {plan_.max_depth, plan_.clamp}, samples, found, tally, stop_);
+        case Integrator::ambient_occlusion:
+            return occlusion_radiance(scene_, samples, found, tally, stop_);
+        case Integrator::normals:
+            return normals_radiance(scene_, samples, found, tally, stop_);
         }
     }
 

@@ -7,10 +7,12 @@
 // knows and this build does not.
 //
 // A visitor has: number, integer, boolean, word, only, point, direction, color, textured_number,
-// textured_color, extents, object, group, kinds, list, table, unbuilt, needs, exclude, and the few below that
-// stand for one place alone: aim, geometry, material_of, placement, files, labels, fail_on.
+// textured_color, extents, object, group, kinds, list, table, unbuilt, needs, exclude, only_when, and the few
+// below that stand for one place alone: aim, sun_angles, geometry, material_of, placement, files, labels, fail_on.
 #pragma once
 
+#include "api/fields/camera_fields.h"
+#include "api/fields/light_fields.h"
 #include "api/fields/material_fields.h"
 #include "api/fields/ranges.h"
 #include "api/fields/sees.h"
@@ -20,18 +22,6 @@
 #include "renderer/description/settings.h"
 
 namespace api {
-
-template <typename V, Sees<renderer::CameraDescription> X>
-void fields(V& v, X& camera)
-{
-    v.only("type", camera_words(), "projection");
-    v.point("position", camera.position, "the eye, metres");
-    v.aim(camera);
-    v.direction("up", camera.up, "which way is up in the picture; need not be perpendicular to the view");
-    v.number("fov_deg", camera.fov_deg, kFieldOfView, "vertical field of view, degrees");
-    v.unbuilt({"lens_radius", "focus_distance"}, "the camera is a pinhole: leave it out");
-    v.unbuilt({"height"}, "it belongs to orthographic cameras; available: perspective");
-}
 
 template <typename V, Sees<renderer::MeshShape> X>
 void fields(V&, X&)
@@ -77,30 +67,6 @@ void fields(V& v, X& object)
     v.word("shading", object.shading, "auto: smooth where the mesh has normals, else flat");
 }
 
-template <typename V, Sees<renderer::PointLight> X>
-void fields(V& v, X& light)
-{
-    v.point("position", light.position, "metres");
-    v.color("intensity", light.intensity, kRadiometric, "W/sr");
-}
-
-template <typename V, Sees<renderer::SpotLight> X>
-void fields(V& v, X& light)
-{
-    v.point("position", light.position, "metres");
-    v.direction("direction", light.direction, "the way the light travels");
-    v.color("intensity", light.intensity, kRadiometric, "W/sr within the inner cone");
-    v.number("inner_deg", light.inner_deg, kInnerAngle, "half angle of full intensity");
-    v.number("outer_deg", light.outer_deg, kOuterAngle, "half angle beyond which there is none");
-}
-
-template <typename V, Sees<renderer::DirectionalLight> X>
-void fields(V& v, X& light)
-{
-    v.direction("direction", light.direction, "the way the light travels");
-    v.color("irradiance", light.irradiance, kRadiometric, "W/m^2 on a surface that faces it");
-}
-
 template <typename V, Sees<renderer::NoEnvironment> X>
 void fields(V&, X&)
 {
@@ -110,13 +76,6 @@ template <typename V, Sees<renderer::ColorEnvironment> X>
 void fields(V& v, X& environment)
 {
     v.color("radiance", environment.radiance, kRadiometric, "W/(m^2 sr), the same from everywhere");
-}
-
-template <typename V, Sees<renderer::TransportDescription> X>
-void fields(V& v, X& transport)
-{
-    v.word("type", transport.type, "auto: the plan decides; direct: one bounce from lights to eye");
-    v.unbuilt({"max_depth", "clamp"}, "direct light has one bounce and nothing to clamp: leave it out");
 }
 
 template <typename V, Sees<renderer::SceneDescription> X>

@@ -39,6 +39,10 @@ inline constexpr Range kAbsorption{0, 1e9}; // 1/m: black within a nanometre
 inline constexpr Range kFieldOfView{0, 180, true, true};
 inline constexpr Range kInnerAngle{0, 180};
 inline constexpr Range kOuterAngle{0, 180, true};
+inline constexpr Range kLensRadius{0, 1e18};
+inline constexpr Range kSunRadius{1e-7, 180}; // to the whole sky
+inline constexpr Range kElevation{-90, 90};
+inline constexpr Range kClamp{0, 1e30, true};
 inline constexpr Range kTurn{-1e6, 1e6};
 inline constexpr Range kExposure{-100, 100};
 inline constexpr Range kSeconds{0, 1e7, true};
@@ -46,6 +50,7 @@ inline constexpr Range kSeconds{0, 1e7, true};
 inline constexpr WholeRange kPriority{0, 100};
 inline constexpr WholeRange kGlassPriority{0, 1000};
 inline constexpr WholeRange kSeed{0, (std::uint64_t(1) << 53) - 1}; // what every JSON reader keeps exactly
+inline constexpr WholeRange kDepth{0, 1'000'000};
 inline constexpr WholeRange kThreads{0, 1024};
 inline constexpr WholeRange kTile{1, 4096};
 inline constexpr WholeRange kSamples{1, std::numeric_limits<std::uint32_t>::max(), "samples"};

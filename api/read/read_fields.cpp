@@ -80,6 +80,12 @@ void ReadFields::unbuilt(std::initializer_list<const char*> names, const char* r
     }
 }
 
+void ReadFields::foreign(const char* name, const char* remedy)
+{
+    known_.push_back(name);
+    if (node_ && node_->contains(name)) fault(at(name), "conflict", in_quotes(name) + ": " + remedy);
+}
+
 void ReadFields::needs(std::initializer_list<const char*> names)
 {
     for (const char* name : names)

@@ -51,6 +51,7 @@ public:
     bool point(const char* name, renderer::Vec3d& value, const char* doc);
     bool direction(const char* name, renderer::Vec3d& value, const char* doc);
     void color(const char* name, renderer::Rgb& value, const Range& range, const char* doc);
+    void color(const char* name, std::optional<renderer::Rgb>& value, const Range& range, const char* doc);
     void textured_color(const char* name, renderer::TexturedColor& value, const Range& range, const char* doc)
     {
         color(name, value.value, range, doc);
@@ -123,7 +124,17 @@ public:
     void needs(std::initializer_list<const char*> names);
     void exclude(const char* a, const char* b, const char* remedy);
 
+    // Members that are there only where `holds`; else each that is given is a fault with `remedy`.
+    template <typename Walk>
+    void only_when(bool holds, std::initializer_list<const char*> names, const char* remedy, const Walk& walk)
+    {
+        if (holds) return walk();
+        for (const char* name : names)
+            foreign(name, remedy);
+    }
+
     void aim(renderer::CameraDescription& camera);
+    void sun_angles(renderer::Vec3d& travels); // instead of `direction`: where it stands
     void geometry(renderer::Shape& shape);
     void material_of(std::optional<std::uint32_t>& material);
     void placement(renderer::Affine3& world_from_object);
@@ -176,6 +187,7 @@ private:
         ((i++ == index ? static_cast<void>(value.template emplace<Ts>()) : static_cast<void>(0)), ...);
     }
 
+    void foreign(const char* name, const char* remedy);
     [[nodiscard]] std::string at(std::string_view member) const;
     [[nodiscard]] std::string at(std::string_view member, std::size_t index) const;
     void fault(std::string pointer, const char* code, std::string detail);

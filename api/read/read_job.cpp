@@ -114,6 +114,15 @@ void settle_quality(renderer::QualitySettings& quality, const renderer::Limits& 
     quality.max_samples = at_most(quality.max_samples);
 }
 
+// A meter makes no picture: its pixels are the replicates of one measurement.
+void settle_meter(JobRequest& job)
+{
+    constexpr std::uint32_t kSide = 4;
+    if (!job.scene.camera || job.scene.camera->projection != renderer::Projection::meter) return;
+    job.settings.image.width_px = job.settings.image.height_px = kSide;
+    job.settings.image.region.reset();
+}
+
 // "unsupported" where the request is right and the build lacks what it asks for.
 ProblemDetails refusal(std::vector<Problem> faults)
 {
@@ -137,6 +146,7 @@ std::variant<JobRequest, ProblemDetails> read_job(std::string_view json, const R
 
     if (std::get<Json>(parsed).is_object()) check_not_empty(job.scene, state.faults);
     check_spot_lights(job.scene, state.faults);
+    settle_meter(job);
     check_image(job.settings.image, context.limits, state.faults);
     settle_quality(job.settings.quality, context.limits);
     if (!state.faults.empty()) return refusal(state.faults.take());

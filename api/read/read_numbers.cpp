@@ -63,6 +63,16 @@ void ReadFields::color(const char* name, renderer::Rgb& value, const Range& rang
             static_cast<float>((*read)[0]), static_cast<float>((*read)[1]), static_cast<float>((*read)[2])};
 }
 
+void ReadFields::color(const char* name,
+                       std::optional<renderer::Rgb>& value,
+                       const Range& range,
+                       const char* doc)
+{
+    renderer::Rgb read{-1, -1, -1}; // no colour that a range of ours holds
+    color(name, read, range, doc);
+    if (read.r >= 0) value = read;
+}
+
 std::optional<std::uint64_t> ReadFields::whole(const char* name, const WholeRange& range)
 {
     const Json* node = find(name);

@@ -4,6 +4,7 @@
 #include "api/read/read_fields.h"
 #include "api/words/digest.h"
 #include "api/words/sentences.h"
+#include "renderer/math/transcendental.h"
 
 namespace api {
 
@@ -33,6 +34,19 @@ void ReadFields::aim(renderer::CameraDescription& camera)
         fault(at("position"),
               "zero_length",
               "position equals the default look_at: give look_at or a direction");
+}
+
+void ReadFields::sun_angles(renderer::Vec3d& travels)
+{
+    double elevation = 0, azimuth = 0;
+    const bool has_elevation = number("elevation_deg", elevation, kElevation, nullptr),
+               has_azimuth = number("azimuth_deg", azimuth, kTurn, nullptr);
+    exclude("direction", "elevation_deg", "give the way the light travels, or where the sun stands");
+    exclude("direction", "azimuth_deg", "give the way the light travels, or where the sun stands");
+    if (!has_elevation && !has_azimuth) return;
+    const auto [sin_e, cos_e] = renderer::sin_cos_deg(elevation);
+    const auto [sin_a, cos_a] = renderer::sin_cos_deg(azimuth);
+    travels = {-cos_e * sin_a, -sin_e, cos_e * cos_a};
 }
 
 void ReadFields::table(const char* name, std::vector<renderer::NamedMaterial>& materials, const char*)

@@ -92,6 +92,17 @@ void SchemaFields::aim(const renderer::CameraDescription& camera)
     exclude("look_at", "direction", nullptr);
 }
 
+void SchemaFields::sun_angles(const renderer::Vec3d&)
+{
+    number("elevation_deg",
+           std::optional<double>{},
+           kElevation,
+           "of the sun over the horizon, instead of direction");
+    number("azimuth_deg", std::optional<double>{}, kTurn, "of the sun, from -z towards +x");
+    exclude("direction", "elevation_deg", nullptr);
+    exclude("direction", "azimuth_deg", nullptr);
+}
+
 void SchemaFields::geometry(const renderer::Shape& shape)
 {
     if (std::holds_alternative<renderer::MeshShape>(shape)) {

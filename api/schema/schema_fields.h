@@ -54,6 +54,10 @@ public:
     void point(const char* name, const renderer::Vec3d& value, const char* doc);
     void direction(const char* name, const renderer::Vec3d& value, const char* doc);
     void color(const char* name, const renderer::Rgb& value, const Range& range, const char* doc);
+    void color(const char* name, const std::optional<renderer::Rgb>&, const Range& range, const char* doc)
+    {
+        put(name, numbers(range, 3, nullptr, doc));
+    }
     void textured_color(const char* name,
                         const renderer::TexturedColor& value,
                         const Range& range,
@@ -107,7 +111,15 @@ public:
     void needs(std::initializer_list<const char*> names);
     void exclude(const char* a, const char* b, const char* remedy);
 
+    // The schema does not tell when: the reader does, and the member's meaning.
+    template <typename Walk>
+    void only_when(bool, std::initializer_list<const char*>, const char*, const Walk& walk)
+    {
+        walk();
+    }
+
     void aim(const renderer::CameraDescription& camera);
+    void sun_angles(const renderer::Vec3d& travels);
     void geometry(const renderer::Shape& shape);
     void material_of(const std::optional<std::uint32_t>& material);
     void placement(const renderer::Affine3& world_from_object);

@@ -14,7 +14,9 @@ using renderer::BvhWidth;
 using renderer::Environment;
 using renderer::Light;
 using renderer::Material;
+using renderer::MeterQuantity;
 using renderer::PhongForm;
+using renderer::Projection;
 using renderer::Shading;
 using renderer::Shape;
 using renderer::Tone;
@@ -26,10 +28,10 @@ WordTable words_for<Material>()
     static constexpr std::array words{alternative<Material, renderer::DiffuseMaterial>("diffuse"),
                                       alternative<Material, renderer::PhongMaterial>("phong"),
                                       Word{"cook_torrance"},
-                                      described<Material, renderer::MirrorMaterial>("mirror"),
-                                      described<Material, renderer::GlassMaterial>("glass"),
-                                      described<Material, renderer::ConductorMaterial>("conductor"),
-                                      described<Material, renderer::EmitterMaterial>("emitter")};
+                                      alternative<Material, renderer::MirrorMaterial>("mirror"),
+                                      alternative<Material, renderer::GlassMaterial>("glass"),
+                                      alternative<Material, renderer::ConductorMaterial>("conductor"),
+                                      alternative<Material, renderer::EmitterMaterial>("emitter")};
     return words;
 }
 
@@ -49,10 +51,10 @@ WordTable words_for<Light>()
     static constexpr std::array words{alternative<Light, renderer::PointLight>("point"),
                                       alternative<Light, renderer::SpotLight>("spot"),
                                       alternative<Light, renderer::DirectionalLight>("directional"),
-                                      Word{"sun"},
-                                      Word{"rectangle"},
-                                      Word{"disk"},
-                                      Word{"sphere"}};
+                                      alternative<Light, renderer::SunLight>("sun"),
+                                      alternative<Light, renderer::RectangleLight>("rectangle"),
+                                      alternative<Light, renderer::DiskLight>("disk"),
+                                      alternative<Light, renderer::SphereLight>("sphere")};
     return words;
 }
 
@@ -88,10 +90,10 @@ WordTable words_for<TransportType>()
 {
     static constexpr std::array words{enumerator("auto", TransportType::automatic),
                                       enumerator("direct", TransportType::direct),
-                                      Word{"whitted"},
-                                      Word{"path"},
-                                      Word{"ambient_occlusion"},
-                                      Word{"normals"}};
+                                      enumerator("whitted", TransportType::whitted),
+                                      enumerator("path", TransportType::path),
+                                      enumerator("ambient_occlusion", TransportType::ambient_occlusion),
+                                      enumerator("normals", TransportType::normals)};
     return words;
 }
 
@@ -128,10 +130,21 @@ WordTable words_for<BvhLevels>()
     return words;
 }
 
-WordTable camera_words()
+template <>
+WordTable words_for<Projection>()
 {
-    static constexpr std::array words{
-        Word{"perspective", 0}, Word{"orthographic"}, Word{"panorama"}, Word{"meter"}};
+    static constexpr std::array words{enumerator("perspective", Projection::perspective),
+                                      enumerator("orthographic", Projection::orthographic),
+                                      enumerator("panorama", Projection::panorama),
+                                      enumerator("meter", Projection::meter)};
+    return words;
+}
+
+template <>
+WordTable words_for<MeterQuantity>()
+{
+    static constexpr std::array words{enumerator("radiance", MeterQuantity::radiance),
+                                      enumerator("irradiance", MeterQuantity::irradiance)};
     return words;
 }
 

@@ -79,6 +79,10 @@ WordTable words_for<renderer::Shading>();
 template <>
 WordTable words_for<renderer::TransportType>();
 template <>
+WordTable words_for<renderer::Projection>();
+template <>
+WordTable words_for<renderer::MeterQuantity>();
+template <>
 WordTable words_for<renderer::Tone>();
 template <>
 WordTable words_for<renderer::BvhSplit>();
@@ -88,7 +92,6 @@ template <>
 WordTable words_for<renderer::BvhLevels>();
 
 // Words without a value of their own: the one that is built is what happens.
-WordTable camera_words();
 WordTable fail_on_words();
 
 // What importer and encoder speak; held against them by tests.

@@ -55,6 +55,11 @@ public:
         point(name, value, doc);
     }
     void color(const char* name, const renderer::Rgb& value, const Range&, const char*);
+    void
+    color(const char* name, const std::optional<renderer::Rgb>& value, const Range& range, const char* doc)
+    {
+        if (value) color(name, *value, range, doc);
+    }
     void textured_color(const char* name,
                         const renderer::TexturedColor& value,
                         const Range& range,
@@ -112,7 +117,14 @@ public:
     void needs(std::initializer_list<const char*>) {}
     void exclude(const char*, const char*, const char*) {}
 
+    template <typename Walk>
+    void only_when(bool holds, std::initializer_list<const char*>, const char*, const Walk& walk)
+    {
+        if (holds) walk();
+    }
+
     void aim(const renderer::CameraDescription& camera);
+    void sun_angles(const renderer::Vec3d&) {} // written as a direction
     void geometry(const renderer::Shape& shape);
     void material_of(const std::optional<std::uint32_t>& material);
     void placement(const renderer::Affine3& world_from_object);

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "renderer/color/rgb.h"
-#include "renderer/math/vec3.h"
+#include "renderer/math/affine.h"
 
+#include <optional>
 #include <variant>
 
 namespace renderer {
@@ -26,7 +27,36 @@ struct DirectionalLight {
     Rgb irradiance{1, 1, 1};   // W/m^2 on a surface that faces it
     friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
 };
-using Light = std::variant<PointLight, SpotLight, DirectionalLight>;
+// A disk at infinity, of the same radiance everywhere.
+struct SunLight {
+    Vec3d direction{0, -1, 0};          // the way the light travels; any length but zero
+    Rgb irradiance{1, 1, 1};            // W/m^2 on a surface that faces its centre
+    double angular_radius_deg = 0.2665; // as the sun is seen from the earth
+    friend bool operator==(const SunLight&, const SunLight&) = default;
+};
+// What an area light gives: one of the two.
+struct AreaLight {
+    Rgb radiance{1, 1, 1};    // W/(m^2 sr), the same in every direction
+    std::optional<Rgb> power; // W in all, instead: from what faces the scene, all of a two-sided light
+    bool two_sided = false;   // also from its back; a sphere has none
+    Affine3 world_from_light;
+    bool visible_to_camera = true;
+    friend bool operator==(const AreaLight&, const AreaLight&) = default;
+};
+struct RectangleLight : AreaLight { // in the xy plane, centred, shining towards +z
+    double width_m = 1, height_m = 1;
+    friend bool operator==(const RectangleLight&, const RectangleLight&) = default;
+};
+struct DiskLight : AreaLight { // in the xy plane, centred, shining towards +z
+    double radius_m = 0.5;
+    friend bool operator==(const DiskLight&, const DiskLight&) = default;
+};
+struct SphereLight : AreaLight { // centred at the origin, shining outwards
+    double radius_m = 0.5;
+    friend bool operator==(const SphereLight&, const SphereLight&) = default;
+};
+using Light =
+    std::variant<PointLight, SpotLight, DirectionalLight, SunLight, RectangleLight, DiskLight, SphereLight>;
 
 struct NoEnvironment {
     friend bool operator==(const NoEnvironment&, const NoEnvironment&) = default;

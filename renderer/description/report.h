@@ -1,7 +1,11 @@
 // What a render says of itself: the plain structs behind report.models, .numerics, .timing and .accuracy.
 #pragma once
 
+#include "renderer/color/rgb.h"
+#include "renderer/description/camera.h"
+
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +25,8 @@ struct ModelReport {
 struct NumericsReport {
     std::uint64_t non_finite_samples = 0;   // dropped and counted, never hidden
     std::uint64_t degenerate_triangles = 0; // zero area: never hit
+    std::uint64_t clamped = 0;              // contributions that transport.clamp cut
+    double cut_weight = 0;                  // of branches not followed: shares of a camera ray, mean of all
     double coordinate_ratio = 0;            // largest coordinate over scene diagonal
     std::string
         precision; // of the corners of meshes: "float", "double" or "mixed"; hits are decided in double
@@ -39,6 +45,7 @@ struct TimingReport {
     double render_s = 0;
     std::uint64_t camera_rays = 0;
     std::uint64_t shadow_rays = 0;
+    std::uint64_t bounce_rays = 0; // of paths and branches beyond the camera's
 };
 
 struct GeometryReport {
@@ -47,12 +54,21 @@ struct GeometryReport {
     std::uint64_t bvh_bytes = 0;
 };
 
+// What a meter read: the mean of independent replicates, and its standard error from their spread.
+struct MeterReading {
+    MeterQuantity quantity = MeterQuantity::radiance;
+    Rgb value{};          // W/(m^2 sr), or W/m^2
+    Rgb standard_error{}; // of value
+    std::uint32_t replicates = 0;
+};
+
 struct RenderReport {
     ModelReport models;
     NumericsReport numerics;
     AccuracyReport accuracy;
     TimingReport timing;
     GeometryReport geometry;
+    std::optional<MeterReading> meter;
     std::uint32_t threads = 0;
     std::vector<std::string> notes; // of the meshes' import, each with its mesh's name; the caller's to fill
 };

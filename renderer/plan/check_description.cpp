@@ -1,5 +1,6 @@
 #include "renderer/plan/check_description.h"
 
+#include "renderer/plan/light_shapes.h"
 #include "renderer/plan/placement.h"
 #include "renderer/plan/world_bounds.h"
 
@@ -78,6 +79,12 @@ private:
 
     void check(const CameraDescription& camera)
     {
+        if (!(camera.lens_radius_m >= 0) || !std::isfinite(camera.lens_radius_m))
+            fault("/scene/camera/lens_radius", "out_of_range", "a radius is finite and not below 0");
+        if (camera.focus_distance_m && !is_size(*camera.focus_distance_m))
+            fault("/scene/camera/focus_distance", "out_of_range", "a distance is finite and above 0");
+        if (!is_size(camera.height_m))
+            fault("/scene/camera/height", "out_of_range", "a height is finite and above 0");
         const std::string aim = camera.aim_is_direction ? "/scene/camera/direction" : "/scene/camera/look_at";
         if (!(camera.fov_deg > 0 && camera.fov_deg < 180))
             fault("/scene/camera/fov_deg",
@@ -143,11 +150,21 @@ private:
             check_direction(spot->direction, at);
             if (!(spot->inner_deg >= 0 && spot->inner_deg <= spot->outer_deg && spot->outer_deg <= 180))
                 fault(at + "/inner_deg", "out_of_range", "0 <= inner_deg <= outer_deg <= 180 must hold");
-        } else {
-            const auto& directional = std::get<DirectionalLight>(light);
-            if (!is_finite(directional.irradiance))
+        } else if (const auto* const directional = std::get_if<DirectionalLight>(&light)) {
+            if (!is_finite(directional->irradiance))
                 fault(at, "not_finite", "every number of a light must be finite");
-            check_direction(directional.direction, at);
+            check_direction(directional->direction, at);
+        } else if (const auto* const sun = std::get_if<SunLight>(&light)) {
+            if (!is_finite(sun->irradiance))
+                fault(at, "not_finite", "every number of a light must be finite");
+            check_direction(sun->direction, at);
+            if (!(sun->angular_radius_deg > 0 && sun->angular_radius_deg <= 180))
+                fault(at + "/angular_radius_deg", "out_of_range", "above 0 and at most 180 degrees");
+        } else if (const auto shaped = shape_of(light)) {
+            if (!is_finite(shaped->light->radiance) ||
+                (shaped->light->power && !is_finite(*shaped->light->power)))
+                fault(at, "not_finite", "every number of a light must be finite");
+            check(shaped->object, at);
         }
     }
 

@@ -1,10 +1,12 @@
 #include "renderer/plan/choices.h"
 
+#include "renderer/plan/light_shapes.h"
 #include "renderer/plan/material_choices.h"
 
 #include <cstdio>
 #include <set>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace renderer {
@@ -19,7 +21,7 @@ struct Census {
     MaterialCensus materials;
     std::set<std::uint32_t> shown_meshes;                            // with materials of their own
     std::size_t emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
-    std::size_t point = 0, spot = 0, directional = 0;
+    std::size_t point = 0, spot = 0, directional = 0, sun = 0, area = 0;
     bool sky = false;
 };
 
@@ -69,6 +71,8 @@ Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshe
         c.point += is_a<PointLight>(light);
         c.spot += is_a<SpotLight>(light);
         c.directional += is_a<DirectionalLight>(light);
+        c.sun += is_a<SunLight>(light);
+        c.area += shape_of(light) ? 1u : 0u;
     }
     c.sky = scene.environment && std::holds_alternative<ColorEnvironment>(*scene.environment);
     return c;
@@ -81,22 +85,27 @@ std::string of(std::size_t count, const char* what)
 
 class Explainer {
 public:
-    Explainer(const Census& census, const RenderSettings& settings, const Budget& budget)
-        : c_(census), settings_(settings), budget_(budget)
+    Explainer(const Census& census,
+              const SceneDescription& scene,
+              const RenderSettings& settings,
+              const Budget& budget,
+              TransportChoice transport)
+        : c_(census), scene_(scene), settings_(settings), budget_(budget), transport_(std::move(transport))
     {
     }
 
     ModelReport run(const std::vector<ModelChoice>& assumed)
     {
         out_.used = assumed;
-        use("pinhole_camera", "one ray a sample, jittered in the pixel: a box filter of one pixel");
-        use("direct",
-            "light reaches a surface from lights and environment and is scattered once towards the camera");
-        skip("indirect_light", "transport is direct: light that scatters more than once is left out");
+        camera();
+        out_.used.insert(out_.used.end(), transport_.used.begin(), transport_.used.end());
+        out_.skipped.insert(out_.skipped.end(), transport_.skipped.begin(), transport_.skipped.end());
         geometry();
         trees();
-        shading();
-        lights();
+        const bool is_lit = transport_.integrator != Integrator::normals &&
+                            transport_.integrator != Integrator::ambient_occlusion;
+        if (is_lit) shading();
+        if (is_lit) lights();
         return std::move(out_);
     }
 
@@ -113,6 +122,27 @@ private:
     void use_if(std::size_t count, const char* name, const std::string& why)
     {
         if (count != 0) use(name, why);
+    }
+
+    void camera()
+    {
+        switch (scene_.camera->projection) {
+        case Projection::perspective:
+            if (scene_.camera->lens_radius_m > 0)
+                use("thin_lens", "rays start all over the lens and meet in the plane of focus");
+            else
+                use("pinhole_camera", "one ray a sample, jittered in the pixel: a box filter of one pixel");
+            break;
+        case Projection::orthographic:
+            use("orthographic_camera", "rays are parallel");
+            break;
+        case Projection::panorama:
+            use("panorama_camera", "every direction around one point");
+            break;
+        case Projection::meter:
+            use("meter", "light is measured at one point: numbers, no picture");
+            break;
+        }
     }
 
     void geometry()
@@ -202,26 +232,35 @@ private:
 
     void lights()
     {
-        const std::size_t all = c_.point + c_.spot + c_.directional;
+        const std::size_t without_extent = c_.point + c_.spot + c_.directional,
+                          all = without_extent + c_.sun + c_.area;
         use_if(c_.point, "point_lights", of(c_.point, "point light"));
         use_if(c_.spot, "spot_lights", of(c_.spot, "spot light"));
         use_if(c_.directional, "directional_lights", of(c_.directional, "directional light"));
-        use_if(all, "hard_shadows", "one shadow ray a light and sample, which ends at the light");
+        use_if(without_extent, "hard_shadows", "one shadow ray a light and sample, which ends at the light");
+        use_if(c_.sun, "sun_disk", of(c_.sun, "sun") + " of its angular size: shadows have penumbras");
+        use_if(
+            c_.area, "area_lights", of(c_.area, "light") + " with a surface, sampled by what of it is seen");
+        if (transport_.picks_lights)
+            use("light_tree",
+                "lights are many: one is picked for each point, likelier the more it may send there");
         if (c_.sky)
             use("environment_light",
-                "the environment's colour is background and light: one shadow ray a sample, drawn by the "
-                "material");
+                "the environment's colour is background and light: one ray a sample, drawn by the material");
         else
             skip("environment_light", "the environment is none");
         if (all == 0 && !c_.sky)
             skip("lights",
-                 "the scene has no light and says that its environment is none: nothing but ambient terms "
-                 "shines");
+                 "the scene has no light and says that its environment is none: nothing but what surfaces "
+                 "give "
+                 "themselves shines");
     }
 
     const Census& c_;
+    const SceneDescription& scene_;
     const RenderSettings& settings_;
     const Budget& budget_;
+    TransportChoice transport_;
     ModelReport out_;
 };
 
@@ -230,10 +269,11 @@ private:
 ModelReport explain(const AssumedScene& scene,
                     std::span<const MeshFacts> meshes,
                     const RenderSettings& settings,
-                    const Budget& budget)
+                    const Budget& budget,
+                    TransportChoice transport)
 {
     const Census census = census_of(scene.description, meshes);
-    return Explainer(census, settings, budget).run(scene.assumed);
+    return Explainer(census, scene.description, settings, budget, std::move(transport)).run(scene.assumed);
 }
 
 } // namespace renderer

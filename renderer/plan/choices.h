@@ -3,6 +3,7 @@
 
 #include "renderer/description/report.h"
 #include "renderer/plan/budget.h"
+#include "renderer/plan/choose_transport.h"
 #include "renderer/plan/plan.h"
 
 #include <span>
@@ -12,6 +13,7 @@ namespace renderer {
 ModelReport explain(const AssumedScene& scene,
                     std::span<const MeshFacts> meshes,
                     const RenderSettings& settings,
-                    const Budget& budget);
+                    const Budget& budget,
+                    TransportChoice transport);
 
 } // namespace renderer

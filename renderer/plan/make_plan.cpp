@@ -2,9 +2,12 @@
 #include "renderer/plan/budget.h"
 #include "renderer/plan/check_description.h"
 #include "renderer/plan/choices.h"
+#include "renderer/plan/choose_transport.h"
 #include "renderer/plan/explain_numerics.h"
 #include "renderer/plan/plan.h"
 #include "renderer/plan/world_frame.h"
+
+#include <utility>
 
 namespace renderer {
 
@@ -23,10 +26,14 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     if (!faults.empty()) return faults.take();
 
     Plan plan;
-    plan.transport = TransportType::direct;
+    TransportChoice transport = choose_transport(description, meshes);
+    plan.integrator = transport.integrator;
+    plan.max_depth = transport.max_depth;
+    if (description.transport.clamp) plan.clamp = static_cast<float>(*description.transport.clamp);
+    plan.picks_lights = transport.picks_lights;
     plan.world_origin = choose_world_origin(description, meshes);
     plan.precision = corner_precision(description, meshes);
-    plan.models = explain(scene, meshes, settings, budget);
+    plan.models = explain(scene, meshes, settings, budget, std::move(transport));
     explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);
     return plan;
 }

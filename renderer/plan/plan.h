@@ -12,6 +12,7 @@
 #include "renderer/geometry/mesh.h"
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -51,10 +52,17 @@ struct AssumedScene {
 };
 AssumedScene assume_defaults(SceneDescription description, std::span<const MeshFacts> meshes, double aspect);
 
+// How radiance is found. `direct` is the short way for scenes that need no other; direct transport of others is a
+// path of one scattering.
+enum class Integrator : std::uint8_t { direct, whitted, path, ambient_occlusion, normals };
+
 struct Plan {
-    TransportType transport = TransportType::direct;
-    Vec3d world_origin{};  // of the frame that is traced in, in the world: see world_frame.h
-    std::string precision; // of the meshes' corners: "float", "double" or "mixed"
+    Integrator integrator = Integrator::direct;
+    std::uint32_t max_depth = 1; // scatterings, see description/transport.h
+    float clamp = std::numeric_limits<float>::infinity();
+    bool picks_lights = false; // by a tree, one a point; else each is asked
+    Vec3d world_origin{};      // of the frame that is traced in, in the world: see world_frame.h
+    std::string precision;     // of the meshes' corners: "float", "double" or "mixed"
     ModelReport models;
 };
 

@@ -7,12 +7,6 @@
 
 namespace renderer {
 
-namespace {
-
-struct DiskPoint {
-    double x, y;
-};
-
 DiskPoint concentric_disk(Sample2 u)
 {
     const double a = 2 * static_cast<double>(u.u0) - 1, b = 2 * static_cast<double>(u.u1) - 1;
@@ -24,8 +18,6 @@ DiskPoint concentric_disk(Sample2 u)
     const auto [s, c] = sin_cos(kPi / 2 - kPi / 4 * (a / b));
     return {b * c, b * s};
 }
-
-} // namespace
 
 Vec3f sample_cosine_hemisphere(Sample2 u)
 {
@@ -77,6 +69,12 @@ Frame::Frame(Vec3f normal) : z(normal)
     const float b = normal.x * normal.y * a;
     x = {1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
     y = {b, sign + normal.y * normal.y * a, -normal.y};
+}
+
+std::pair<Vec3d, Vec3d> basis_around(Vec3d z)
+{
+    const double sign = std::copysign(1.0, z.z), a = -1 / (sign + z.z), b = z.x * z.y * a;
+    return {{1 + sign * z.x * z.x * a, sign * b, -sign * z.x}, {b, sign + z.y * z.y * a, -z.y}};
 }
 
 } // namespace renderer

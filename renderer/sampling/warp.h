@@ -13,7 +13,15 @@
 #include "renderer/math/vec3.h"
 #include "renderer/sampling/sampler.h"
 
+#include <utility>
+
 namespace renderer {
+
+// A point of the unit disk, uniformly.
+struct DiskPoint {
+    double x, y;
+};
+DiskPoint concentric_disk(Sample2 u);
 
 // Draws a direction with density proportional to its cosine with +z.
 Vec3f sample_cosine_hemisphere(Sample2 u);
@@ -39,5 +47,8 @@ struct Frame {
     Vec3f to_world(Vec3f v) const { return x * v.x + y * v.y + z * v.z; }
     Vec3f to_local(Vec3f v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
 };
+
+// The same around a unit vector in double: x and y of it.
+std::pair<Vec3d, Vec3d> basis_around(Vec3d z);
 
 } // namespace renderer

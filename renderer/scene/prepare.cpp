@@ -1,5 +1,6 @@
 #include "renderer/geometry/shapes.h"
 #include "renderer/math/floating_point_mode.h"
+#include "renderer/plan/light_shapes.h"
 #include "renderer/plan/placement.h"
 #include "renderer/scene/scene.h"
 
@@ -33,6 +34,27 @@ Material from_mesh(const MeshMaterial& m)
     return phong;
 }
 
+// The camera and the lights in the frame that is traced in.
+CameraDescription moved(CameraDescription camera, Vec3d world_origin)
+{
+    if (!camera.aim_is_direction) {
+        camera.aim = camera.aim - camera.position;
+        if (!camera.focus_distance_m) camera.focus_distance_m = length(camera.aim);
+    }
+    camera.aim_is_direction = true;
+    camera.position = camera.position - world_origin;
+    return camera;
+}
+
+Light moved(Light light, Vec3d world_origin)
+{
+    if (auto* const point = std::get_if<PointLight>(&light))
+        point->position = point->position - world_origin;
+    else if (auto* const spot = std::get_if<SpotLight>(&light))
+        spot->position = spot->position - world_origin;
+    return light; // those with a shape are placed as objects are
+}
+
 class Preparation {
 public:
     Preparation(const SceneDescription& scene,
@@ -49,17 +71,22 @@ public:
         bsdfs.push_back(make_bsdf(DiffuseMaterial{}));
     }
 
-    // Every object of the scene; false if `stop` was requested.
+    // Every object of the scene, and every light that has a shape; false if `stop` was requested.
     bool run()
     {
-        for (const ObjectDescription& object : scene_.objects)
+        for (const ObjectDescription& object : scene_.objects) {
+            if (object.material && is_nothing(*object.material)) continue;
             if (stop_.stop_requested() || !add(object)) return false;
+        }
+        for (const Light& light : scene_.lights)
+            if (!add(light)) return false;
         return true;
     }
 
     std::vector<Bsdf> bsdfs;
     std::vector<Instance> instances;
     std::vector<Scene::Parts::Look> looks;
+    SceneLights lights;
     std::vector<SharedMesh> held;
     GeometryReport geometry;
     NumericsReport numerics;
@@ -77,22 +104,35 @@ private:
         numerics.degenerate_triangles += degenerate_triangles(*mesh);
     }
 
-    bool add(const ObjectDescription& object)
+    // Glass that neither bends nor takes light, where no other glass could be displaced by it.
+    bool is_nothing(std::uint32_t material) const
+    {
+        const auto is_clear = [](const NamedMaterial& m) {
+            const auto* const glass = std::get_if<GlassMaterial>(&m.material);
+            return glass == nullptr || (glass->ior == 1 && is_black(glass->absorption));
+        };
+        return std::holds_alternative<GlassMaterial>(scene_.materials[material].material) &&
+               std::all_of(scene_.materials.begin(), scene_.materials.end(), is_clear);
+    }
+
+    // `bsdf`: of a light's own shape, instead of a material.
+    bool add(const ObjectDescription& object, std::optional<std::uint32_t> bsdf = std::nullopt)
     {
         const auto found = geometry_of(object.shape);
         if (!found) return false;
-        const auto [shape, own] = *found;
+        const auto& [shape, own, run] = *found;
         const auto instance =
             Instance::place(shape,
                             placement(object, own != nullptr ? own->origin : Vec3d{}, world_origin_),
                             object.visible_to_camera);
         if (!instance)
             throw std::invalid_argument("prepare: an object's transform is singular; make_plan refuses it");
+        const auto number = static_cast<std::uint32_t>(instances.size());
         instances.push_back(*instance);
         Scene::Parts::Look look;
         if (object.shading != Shading::flat && own != nullptr && !own->normals.empty()) look.normals_of = own;
-        if (object.material) {
-            look.first_bsdf = *object.material;
+        if (bsdf || object.material) {
+            look.first_bsdf = bsdf ? *bsdf : *object.material;
         } else if (own != nullptr && !own->materials.empty()) {
             look.first_bsdf = own_materials(*own);
             look.materials_of = own;
@@ -101,27 +141,84 @@ private:
         }
         looks.push_back(look);
         ++geometry.instances;
+        add_emitters_of(object.shape, *instance, number, look, run);
         return true;
     }
 
-    using Found = std::pair<InstanceGeometry, const Mesh*>;
+    // What shines of an object's surfaces.
+    void add_emitters_of(const Shape& shape,
+                         const Instance& instance,
+                         std::uint32_t number,
+                         const Scene::Parts::Look& look,
+                         const MeshPart& run)
+    {
+        const bool by_triangle =
+            look.materials_of != nullptr && !look.materials_of->triangle_materials.empty();
+        if (!by_triangle) {
+            const Bsdf& bsdf = bsdfs[look.first_bsdf];
+            if (is_black(bsdf.emission)) return;
+            if (std::holds_alternative<RectangleShape>(shape))
+                return add_rectangle(lights, instance, number, bsdf.emission, bsdf.two_sided);
+            return add_emitters(lights,
+                                instance,
+                                number,
+                                run.first_triangle,
+                                run.triangle_count,
+                                bsdf.emission,
+                                bsdf.two_sided);
+        }
+        for (std::uint32_t i = run.first_triangle; i < run.first_triangle + run.triangle_count; ++i) {
+            const Bsdf& bsdf = bsdfs[look.first_bsdf + look.materials_of->triangle_materials[i]];
+            if (!is_black(bsdf.emission))
+                add_emitters(lights, instance, number, i, 1, bsdf.emission, bsdf.two_sided);
+        }
+    }
 
-    // The shape for rays, and the user's mesh behind it (not our own box or rectangle, which are flat).
+    bool add(const Light& light)
+    {
+        if (const auto* const sun = std::get_if<SunLight>(&light)) {
+            lights.suns.push_back(prepare_sun(*sun));
+            return true;
+        }
+        const std::optional<LightShape> shaped = shape_of(light);
+        if (!shaped) {
+            lights.listed.push_back(prepare_light(moved(light, world_origin_)));
+            return true;
+        }
+        const std::size_t first = lights.emitters.size();
+        const std::uint32_t bsdf = next_bsdf();
+        bsdfs.push_back(make_bsdf(EmitterMaterial{{shaped->light->radiance}, shaped->light->two_sided}));
+        if (!add(shaped->object, bsdf)) return false;
+        if (lights.emitters.size() == first || !shaped->light->power) return true;
+        Emitter& emitter = lights.emitters[first];
+        emitter.radiance = radiance_of_power(*shaped->light->power, emitter);
+        bsdfs[bsdf].emission = emitter.radiance;
+        return true;
+    }
+
+    // The shape for rays, the user's mesh behind it (not our own box or rectangle, which are flat), and its triangles.
+    struct Found {
+        InstanceGeometry geometry;
+        const Mesh* own = nullptr;
+        MeshPart run{};
+    };
+
     // Nothing if `stop` was requested.
     std::optional<Found> geometry_of(const Shape& shape)
     {
         if (const auto* const sphere = std::get_if<SphereShape>(&shape))
-            return Found{Sphere{sphere->radius_m}, nullptr};
-        if (const auto* const disk = std::get_if<DiskShape>(&shape))
-            return Found{Disk{disk->radius_m}, nullptr};
-        if (std::holds_alternative<BoxShape>(shape)) return Found{unit_shape(box_, unit_box), nullptr};
-        if (std::holds_alternative<RectangleShape>(shape))
-            return Found{unit_shape(rectangle_, unit_rectangle), nullptr};
+            return Found{Sphere{sphere->radius_m}};
+        if (const auto* const disk = std::get_if<DiskShape>(&shape)) return Found{Disk{disk->radius_m}};
+        if (std::holds_alternative<BoxShape>(shape)) return unit_shape(box_, unit_box);
+        if (std::holds_alternative<RectangleShape>(shape)) return unit_shape(rectangle_, unit_rectangle);
         const auto& mesh = std::get<MeshShape>(shape);
-        const SharedMesh prepared = mesh.part.empty() ? meshes_[mesh.mesh] : part(mesh);
+        MeshPart run = mesh.part.empty() ? MeshPart{} : run_of(mesh);
+        const SharedMesh prepared = mesh.part.empty() ? meshes_[mesh.mesh] : part(mesh, run);
         if (!prepared) return std::nullopt;
         hold(prepared);
-        return Found{rays_of(*prepared), &mesh_of(*prepared)};
+        const Mesh& own = mesh_of(*prepared);
+        if (mesh.part.empty()) run.triangle_count = static_cast<std::uint32_t>(own.triangles.size());
+        return Found{rays_of(*prepared), &own, run};
     }
 
     static InstanceGeometry rays_of(const PreparedMesh& mesh)
@@ -130,15 +227,16 @@ private:
         return BaselineGeometry{&mesh_of(mesh), baseline_of(mesh)};
     }
 
-    InstanceGeometry unit_shape(SharedMesh& shared, Mesh (*make)())
+    Found unit_shape(SharedMesh& shared, Mesh (*make)())
     {
         if (!shared) shared = prepare_mesh(make(), tree_, pool_);
         hold(shared);
-        return rays_of(*shared);
+        MeshPart run;
+        run.triangle_count = static_cast<std::uint32_t>(mesh_of(*shared).triangles.size());
+        return {rays_of(*shared), nullptr, run};
     }
 
-    // Parts that name the same triangles share a tree; one that names all has the mesh's own.
-    SharedMesh part(const MeshShape& shape)
+    const MeshPart& run_of(const MeshShape& shape)
     {
         const Mesh& whole = mesh_of(*meshes_[shape.mesh]);
         auto [named, is_new] = named_parts_.try_emplace(shape.mesh);
@@ -146,7 +244,13 @@ private:
         const auto found = named->second.find(shape.part);
         if (found == named->second.end())
             throw std::invalid_argument("prepare: a mesh has no such part; make_plan refuses it");
-        const MeshPart& run = *found->second;
+        return *found->second;
+    }
+
+    // Parts that name the same triangles share a tree; one that names all has the mesh's own.
+    SharedMesh part(const MeshShape& shape, const MeshPart& run)
+    {
+        const Mesh& whole = mesh_of(*meshes_[shape.mesh]);
         if (run.triangle_count == whole.triangles.size()) return meshes_[shape.mesh];
         SharedMesh& shared = parts_[{shape.mesh, run.first_triangle, run.triangle_count}];
         if (!shared) shared = prepare_part(meshes_[shape.mesh], run, tree_, pool_, stop_);
@@ -188,22 +292,36 @@ double coordinate_ratio(const Bounds3d& bounds, Vec3d world_origin)
     return diagonal > 0 ? largest / diagonal : 0;
 }
 
-// The camera and the lights in the frame that is traced in.
-CameraDescription moved(CameraDescription camera, Vec3d world_origin)
+// The bodies of glass around a point: those that a ray from there leaves without having entered them. The one that it
+// leaves last was entered first.
+Media media_around(Vec3d point,
+                   const InstanceTree& tree,
+                   std::span<const Bsdf> bsdfs,
+                   std::span<const Scene::Parts::Look> looks)
 {
-    if (!camera.aim_is_direction) camera.aim = camera.aim - camera.position;
-    camera.aim_is_direction = true;
-    camera.position = camera.position - world_origin;
-    return camera;
-}
-
-Light moved(Light light, Vec3d world_origin)
-{
-    if (auto* const point = std::get_if<PointLight>(&light))
-        point->position = point->position - world_origin;
-    else if (auto* const spot = std::get_if<SpotLight>(&light))
-        spot->position = spot->position - world_origin;
-    return light;
+    Media media;
+    if (std::none_of(bsdfs.begin(), bsdfs.end(), transmits)) return media;
+    constexpr int kMostSurfaces = 4096; // glass that was not closed might never end
+    constexpr Vec3d kAnyWay{0.5376, 0.7312, 0.4201};
+    std::vector<std::pair<std::uint32_t, const GlassMedium*>> left;
+    std::map<std::uint32_t, int> entered;
+    Ray ray{point, kAnyWay};
+    for (int i = 0; i < kMostSurfaces; ++i) {
+        const std::optional<SceneHit> hit = tree.closest_hit(ray);
+        if (!hit) break;
+        ray.origin = offset_origin(hit->point, kAnyWay);
+        const Bsdf& bsdf = bsdfs[looks[hit->instance].first_bsdf]; // of a mesh's own materials the first
+        if (!transmits(bsdf)) continue;
+        if (dot(hit->point.normal, kAnyWay) < 0)
+            ++entered[hit->instance];
+        else if (entered[hit->instance] > 0)
+            --entered[hit->instance];
+        else
+            left.emplace_back(hit->instance, &bsdf.medium);
+    }
+    for (auto body = left.rbegin(); body != left.rend(); ++body)
+        media.cross(body->first, *body->second, true);
+    return media;
 }
 
 Rgb environment_of(const SceneDescription& scene)
@@ -227,9 +345,7 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
     const AccelerationSettings& acceleration = settings.acceleration;
     Preparation made(description, plan.world_origin, meshes, mesh_tree(acceleration), pool, stop);
     if (!made.run()) return nullptr;
-    std::vector<PreparedLight> lights;
-    for (const Light& light : description.lights)
-        lights.push_back(prepare_light(moved(light, plan.world_origin)));
+    if (plan.picks_lights) made.lights.pick_by_tree();
 
     InstanceTree tree = acceleration.levels == BvhLevels::two
                             ? InstanceTree(std::move(made.instances), acceleration.split, pool)
@@ -237,18 +353,20 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
     made.geometry.bvh_bytes += tree.size_bytes();
     made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds(), plan.world_origin);
     made.numerics.precision = plan.precision;
-    return std::make_shared<const Scene>(
-        Scene::Parts{Camera(moved(description.camera.value(), plan.world_origin),
-                            settings.image.width_px,
-                            settings.image.height_px),
-                     std::move(tree),
-                     std::move(lights),
-                     environment_of(description),
-                     std::move(made.bsdfs),
-                     std::move(made.held),
-                     made.geometry,
-                     made.numerics,
-                     std::move(made.looks)});
+    const Camera camera(moved(description.camera.value(), plan.world_origin),
+                        settings.image.width_px,
+                        settings.image.height_px);
+    const Media media = media_around(camera.position(), tree, made.bsdfs, made.looks);
+    return std::make_shared<const Scene>(Scene::Parts{camera,
+                                                      std::move(tree),
+                                                      std::move(made.lights),
+                                                      environment_of(description),
+                                                      std::move(made.bsdfs),
+                                                      std::move(made.held),
+                                                      made.geometry,
+                                                      made.numerics,
+                                                      std::move(made.looks),
+                                                      media});
 }
 
 } // namespace renderer

@@ -7,6 +7,8 @@ namespace {
 // Interpolated normals shorter than this have cancelled one another: what is left is noise.
 constexpr double kShortestNormal = 1e-4;
 
+const Bsdf kBlack = make_bsdf(EmitterMaterial{.radiance = {}}); // the back of what has one side
+
 Vec3d corner_normal(const Mesh& mesh, const Triangle& triangle, std::size_t corner)
 {
     return to_double(mesh.normals[triangle[corner]]);
@@ -37,10 +39,13 @@ Surface Scene::surface_at(const SceneHit& hit, Vec3d toward_viewer) const
         shading = geometric; // none, or at right angles: it cannot be told which side it means
     else if (agreement < 0)
         shading = -shading;
-    std::uint32_t bsdf = look.first_bsdf;
+    std::uint32_t number = look.first_bsdf;
     if (look.materials_of != nullptr && !look.materials_of->triangle_materials.empty())
-        bsdf += look.materials_of->triangle_materials[hit.primitive];
-    return {hit.point, to_float(geometric), Frame(to_float(shading)), &parts_.bsdfs[bsdf]};
+        number += look.materials_of->triangle_materials[hit.primitive];
+    const bool is_outside = dot(outward, toward_viewer) >= 0;
+    const Bsdf* bsdf = &parts_.bsdfs[number];
+    if (!bsdf->two_sided && !is_outside) bsdf = &kBlack;
+    return {hit.point, to_float(geometric), shading, Frame(to_float(shading)), is_outside, bsdf};
 }
 
 } // namespace renderer

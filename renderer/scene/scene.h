@@ -13,10 +13,11 @@
 #include "renderer/camera/camera.h"
 #include "renderer/description/report.h"
 #include "renderer/description/scene_description.h"
-#include "renderer/lights/light_sample.h"
 #include "renderer/materials/bsdf.h"
+#include "renderer/materials/media.h"
 #include "renderer/plan/plan.h"
 #include "renderer/sampling/warp.h"
+#include "renderer/scene/scene_lights.h"
 
 #include <cstdint>
 #include <memory>
@@ -28,9 +29,11 @@ namespace renderer {
 
 // What a camera ray found, ready to be shaded.
 struct Surface {
-    SurfacePoint point; // where shadow rays leave from
-    Vec3f geometric;    // unit normals, both on the viewer's side of the surface
-    Frame shading;
+    SurfacePoint point;     // where shadow rays leave from
+    Vec3f geometric;        // unit normals, all on the viewer's side of the surface
+    Vec3d normal;           // the shading one
+    Frame shading;          // around it
+    bool is_outside = true; // the viewer is where the shape's own normal points
     const Bsdf* bsdf = nullptr;
 };
 
@@ -40,7 +43,7 @@ public:
     struct Parts {
         Camera camera;
         InstanceTree tree;
-        std::vector<PreparedLight> lights;
+        SceneLights lights;
         Rgb environment; // black: none
         std::vector<Bsdf> bsdfs;
         std::vector<std::shared_ptr<const PreparedMesh>> meshes; // kept alive
@@ -53,12 +56,30 @@ public:
             const Mesh* normals_of = nullptr;   // the mesh whose normals are interpolated; or none: flat
         };
         std::vector<Look> looks;
+        Media media_at_camera; // that its eye is inside of
     };
     explicit Scene(Parts parts) : parts_(std::move(parts)) {}
 
     const Camera& camera() const { return parts_.camera; }
     const InstanceTree& tree() const { return parts_.tree; }
-    std::span<const PreparedLight> lights() const { return parts_.lights; }
+    std::span<const PreparedLight> lights() const { return parts_.lights.listed; }
+    std::span<const Sun> suns() const { return parts_.lights.suns; }
+    std::span<const Emitter> emitters() const { return parts_.lights.emitters; }
+    static constexpr std::uint32_t kNoEmitter = 0xffffffff;
+    std::uint32_t emitter_at(const SceneHit& hit) const
+    {
+        const auto found = parts_.lights.emitter_of.find(std::uint64_t{hit.instance} << 32 | hit.primitive);
+        return found == parts_.lights.emitter_of.end() ? kNoEmitter : found->second;
+    }
+    const LightTree& light_tree() const { return parts_.lights.tree; }
+    // Of a number that the tree picked: a light without extent, or nullptr for an emitter.
+    const PreparedLight* picked_light(std::uint32_t number) const
+    {
+        return number < parts_.lights.emitters.size()
+                   ? nullptr
+                   : &parts_.lights.picked[number - parts_.lights.emitters.size()];
+    }
+    const Media& media_at_camera() const { return parts_.media_at_camera; }
     Rgb environment() const { return parts_.environment; }
     const GeometryReport& geometry() const { return parts_.geometry; }
     const NumericsReport& numerics() const { return parts_.numerics; }

@@ -75,7 +75,7 @@ Mesh knot(std::uint32_t rings, std::uint32_t sides)
     for (std::uint32_t i = 0; i < rings; ++i)
         for (std::uint32_t j = 0; j < sides; ++j) {
             const std::uint32_t i1 = (i + 1) % rings, j1 = (j + 1) % sides;
-            add_quad(mesh, i * sides + j, i * sides + j1, i1 * sides + j1, i1 * sides + j);
+            add_quad(mesh, i * sides + j, i1 * sides + j, i1 * sides + j1, i * sides + j1);
         }
     return mesh;
 }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cstddef>
 #include <set>
 #include <string>
@@ -68,7 +70,9 @@ TEST(WordTables, HaveAWordForEachAlternative)
     expect_a_word_for_each<renderer::Environment>(std::variant_size_v<renderer::Environment>, 0);
     expect_a_word_for_each<renderer::PhongForm>(2, 0);
     expect_a_word_for_each<renderer::Shading>(3, 0);
-    expect_a_word_for_each<renderer::TransportType>(2, 0);
+    expect_a_word_for_each<renderer::TransportType>(6, 0);
+    expect_a_word_for_each<renderer::Projection>(4, 0);
+    expect_a_word_for_each<renderer::MeterQuantity>(2, 0);
     expect_a_word_for_each<renderer::Tone>(2, 0);
     expect_a_word_for_each<renderer::BvhSplit>(2, 0);
     expect_a_word_for_each<renderer::BvhWidth>(2, 0);
@@ -77,10 +81,11 @@ TEST(WordTables, HaveAWordForEachAlternative)
 
 TEST(WordTables, TellBuiltFromKnown)
 {
-    EXPECT_FALSE(api::find_word(api::words_for<renderer::Material>(), "glass")->built());
-    EXPECT_EQ(api::find_word(api::words_for<renderer::Material>(), "wood"), nullptr);
-    const std::vector<std::string> built{"diffuse", "phong"};
-    EXPECT_EQ(api::names_of(api::words_for<renderer::Material>()), built);
+    EXPECT_FALSE(api::find_word(api::words_for<renderer::Environment>(), "atmosphere")->built());
+    EXPECT_EQ(api::find_word(api::words_for<renderer::Environment>(), "fog"), nullptr);
+    const std::vector<std::string> built = api::names_of(api::words_for<renderer::Environment>());
+    EXPECT_EQ(std::count(built.begin(), built.end(), "color"), 1);
+    EXPECT_EQ(std::count(built.begin(), built.end(), "atmosphere"), 0);
 }
 
 } // namespace

@@ -125,20 +125,59 @@ private:
 
     renderer::Light light()
     {
-        switch (random_() % 3) {
+        switch (random_() % 7) {
         case 0:
             return renderer::PointLight{point(), color(1e20f)};
         case 1:
             return renderer::SpotLight{point(), direction(), color(1e-20f), unit() * 10, 10 + unit() * 10};
-        default:
+        case 2:
             return renderer::DirectionalLight{direction(), color(7)};
+        case 3:
+            return renderer::SunLight{direction(), color(3), 0.1 + unit()};
+        case 4:
+            return renderer::RectangleLight{area_light(true), positive(), positive()};
+        case 5:
+            return renderer::DiskLight{area_light(true), positive()};
+        default:
+            return renderer::SphereLight{area_light(false), positive()};
         }
+    }
+
+    renderer::AreaLight area_light(bool has_back)
+    {
+        renderer::AreaLight light;
+        if (coin())
+            light.power = color(5);
+        else
+            light.radiance = color(9);
+        light.two_sided = has_back && coin();
+        light.world_from_light = placement();
+        light.visible_to_camera = coin();
+        return light;
+    }
+
+    renderer::CameraDescription camera()
+    {
+        renderer::CameraDescription camera;
+        camera.projection =
+            static_cast<renderer::Projection>(whole(0, 2)); // a meter settles the picture's size
+        camera.position = point();
+        camera.aim_is_direction = coin();
+        camera.aim = direction();
+        camera.up = direction();
+        if (camera.projection == renderer::Projection::perspective) {
+            camera.fov_deg = 1 + unit() * 178;
+            camera.lens_radius_m = coin() ? unit() : 0;
+            if (coin()) camera.focus_distance_m = positive();
+        }
+        if (camera.projection == renderer::Projection::orthographic) camera.height_m = positive();
+        return camera;
     }
 
     void scene(JobRequest& job)
     {
         renderer::SceneDescription& scene = job.scene;
-        if (coin()) scene.camera = {point(), coin(), direction(), direction(), 1 + unit() * 178};
+        if (coin()) scene.camera = camera();
         if (coin()) scene.environment = renderer::NoEnvironment{};
         if (coin()) scene.environment = renderer::ColorEnvironment{color(3)};
         for (int i = 0; i < whole(0, 4); ++i)
@@ -156,7 +195,9 @@ private:
         }
         for (int i = 0; i < whole(0, 3); ++i)
             scene.lights.push_back(light());
-        if (coin()) scene.transport.type = renderer::TransportType::direct;
+        scene.transport.type = static_cast<renderer::TransportType>(whole(0, 5));
+        if (coin()) scene.transport.max_depth = static_cast<std::uint32_t>(whole(0, 1000));
+        if (coin()) scene.transport.clamp = positive();
     }
 
     std::mt19937_64 random_;

@@ -37,6 +37,7 @@ struct FloorView {
         floor.material = 0;
         floor.world_from_object = Affine3::rotate_deg(-90, {1, 0, 0});
         d.environment = NoEnvironment{};
+        d.transport.type = TransportType::direct;
         test.settings.image.width_px = test.settings.image.height_px = kSide;
         test.settings.quality.samples = 64;
         return test;

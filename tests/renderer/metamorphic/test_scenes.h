@@ -61,6 +61,7 @@ inline TestScene home(bool with_sky = true)
 {
     TestScene test;
     SceneDescription& d = test.description;
+    d.transport.type = TransportType::direct;
     test.meshes.push_back(twisted_column().framed());
     PhongMaterial shiny;
     shiny.diffuse = {0.3f, 0.4f, 0.5f};

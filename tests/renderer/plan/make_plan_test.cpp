@@ -265,14 +265,13 @@ TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
                 IsSupersetOf({"assumed_camera",
                               "assumed_sky",
                               "assumed_sun",
-                              "direct",
+                              "path",
                               "watertight_triangles",
                               "smooth_normals",
                               "diffuse",
                               "directional_lights",
                               "environment_light"}));
-    EXPECT_THAT(names(plan.models.skipped),
-                UnorderedElementsAre("indirect_light", "two_level_bvh", "textures"));
+    EXPECT_THAT(names(plan.models.skipped), UnorderedElementsAre("two_level_bvh", "textures"));
 
     scene.materials.push_back({"shiny", renderer::PhongMaterial{}});
     scene.objects[0].material = 0;
@@ -287,8 +286,7 @@ TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
                               "default_diffuse",
                               "spot_lights",
                               "hard_shadows"}));
-    EXPECT_THAT(names(other.models.skipped),
-                UnorderedElementsAre("indirect_light", "smooth_normals", "environment_light"));
+    EXPECT_THAT(names(other.models.skipped), UnorderedElementsAre("smooth_normals", "environment_light"));
 }
 
 TEST(MakePlan, TellsOfTwoLevelsOnlyWhereOneTreeStandsOverOthers)

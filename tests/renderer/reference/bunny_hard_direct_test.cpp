@@ -56,6 +56,7 @@ tests::TestScene bunny_on_the_ground(Mesh bunny)
     d.camera->position = {0.9, 1.3, 2.8};
     d.camera->aim = {0, 0.6, 0};
     d.camera->fov_deg = 40;
+    d.transport.type = TransportType::direct;
     test.settings.image.width_px = test.settings.image.height_px = 512;
     return test;
 }

@@ -1,0 +1,172 @@
+#include "renderer/integrators/whitted.h"
+
+#include "renderer/integrators/direct_lighting.h"
+#include "renderer/integrators/surface_step.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace renderer {
+
+namespace {
+
+// Branches that are done and not yet forgotten: two mirrors may face each other for a million rays.
+constexpr std::size_t kKept = 1024;
+
+float strongest(Rgb c)
+{
+    return std::max({c.r, c.g, c.b});
+}
+
+struct Branch {
+    Ray ray;
+    Rgb weight{1, 1, 1};
+    const CameraSample* of = nullptr;
+    std::size_t sample = 0;
+    std::uint32_t depth = 0; // scatterings so far
+    Media media{};
+};
+
+// The branches of all samples, generation by generation. Light is added to a sample in the order of its own branches,
+// whichever others are in the run.
+class TreeRun {
+public:
+    TreeRun(const Scene& scene,
+            std::uint32_t max_depth,
+            std::span<Rgb> radiance,
+            RayTally& tally,
+            const std::stop_token& stop)
+        : scene_(scene), max_depth_(max_depth), radiance_(radiance), tally_(tally), stop_(stop)
+    {
+    }
+
+    void run(std::span<const CameraSample> samples)
+    {
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            waiting_.push_back(
+                {.ray = samples[i].ray, .of = &samples[i], .sample = i, .media = scene_.media_at_camera()});
+            radiance_[i] = {};
+        }
+        RayKind kind = RayKind::camera;
+        for (std::size_t done = 0; done < waiting_.size() && !stop_.stop_requested();) {
+            const std::size_t count = std::min(waiting_.size() - done, kMostSamples);
+            std::copy_n(waiting_.begin() + static_cast<std::ptrdiff_t>(done), count, branches_);
+            follow(count, kind);
+            done += count;
+            kind = RayKind::other; // the samples are one run, so no camera ray is left
+            if (done < kKept || 2 * done < waiting_.size()) continue;
+            waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
+            done = 0;
+        }
+    }
+
+private:
+    void follow(std::size_t count, RayKind kind)
+    {
+        for (std::size_t i = 0; i < count; ++i)
+            rays_[i] = branches_[i].ray;
+        (kind == RayKind::camera ? tally_.camera_rays : tally_.bounce_rays) += count;
+        const std::uint64_t met = scene_.tree().closest_hits({rays_, count}, hits_, kind);
+        std::size_t lit = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            found_[i] = {};
+            if ((met >> i & 1) == 0)
+                found_[i] = background(scene_, branches_[i].ray.direction, 0);
+            else if (arrive(i))
+                of_point_[lit++] = i;
+        }
+        for (std::size_t i = 0; i < lit; ++i) {
+            const std::size_t branch = of_point_[i];
+            points_[i] = {&surfaces_[branch], wo_[branch], branches_[branch].of, branches_[branch].depth};
+            added_[i] = {};
+        }
+        DirectLighting(scene_, false, tally_, stop_).gather({points_, lit}, {added_, lit});
+        for (std::size_t i = 0; i < lit; ++i)
+            found_[of_point_[i]] += added_[i];
+        for (std::size_t i = 0; i < count; ++i)
+            radiance_[branches_[i].sample] += branches_[i].weight * found_[i];
+    }
+
+    // What shines there, and the branches that go on. True if lights are to be asked.
+    bool arrive(std::size_t i)
+    {
+        Branch& branch = branches_[i];
+        const SceneHit& hit = hits_[i];
+        const Vec3d toward_viewer = -branch.ray.direction;
+        Surface& surface = surfaces_[i] = scene_.surface_at(hit, toward_viewer);
+        if (branch.media.here() != nullptr)
+            branch.weight = branch.weight * transmittance(branch.media, hit.t);
+        found_[i] = surface.bsdf->emission + surface.bsdf->ambient;
+        if (surface.bsdf->kind == BsdfKind::black) return false;
+        wo_[i] = surface.shading.to_local(to_float(toward_viewer));
+        if (transmits(*surface.bsdf)) {
+            Bsdf& bsdf = glass_[i] = *surface.bsdf;
+            surface.bsdf = &bsdf;
+            const Media::Boundary boundary =
+                branch.media.boundary(hit.instance, bsdf.medium, surface.is_outside);
+            bsdf.eta = boundary.eta;
+            if (!boundary.is_real) {
+                Branch through = branch;
+                through.media.cross(hit.instance, bsdf.medium, surface.is_outside);
+                through.ray = Ray{offset_origin(surface.point, branch.ray.direction), branch.ray.direction};
+                waiting_.push_back(through);
+                return false;
+            }
+        }
+        const DeltaLobes lobes = delta_lobes(*surface.bsdf, wo_[i]);
+        for (std::size_t l = 0; l < lobes.count; ++l)
+            grow(branch, hit, surface, lobes.lobes[l]);
+        return branch.depth < max_depth_ && !is_delta_only(*surface.bsdf);
+    }
+
+    void grow(const Branch& from, const SceneHit& hit, const Surface& surface, const DeltaLobe& lobe)
+    {
+        const Bsdf& bsdf = *surface.bsdf;
+        const Vec3d way = lobe.is_transmission
+                              ? refracted(surface, from.ray.direction, static_cast<double>(bsdf.eta))
+                              : reflected(surface, from.ray.direction);
+        if ((dot(surface.geometric, to_float(way)) > 0) == lobe.is_transmission) return;
+        Branch branch = from;
+        branch.weight = from.weight * lobe.weight;
+        const float carried = strongest(branch.weight);
+        if (carried == 0) return;
+        if (from.depth >= max_depth_ || carried < kLeastWeight) {
+            tally_.cut_weight += static_cast<double>(carried);
+            return;
+        }
+        if (lobe.is_transmission) branch.media.cross(hit.instance, bsdf.medium, surface.is_outside);
+        branch.ray = Ray{offset_origin(surface.point, way), way};
+        ++branch.depth;
+        waiting_.push_back(branch);
+    }
+
+    const Scene& scene_;
+    std::uint32_t max_depth_;
+    std::span<Rgb> radiance_;
+    RayTally& tally_;
+    const std::stop_token& stop_;
+    std::vector<Branch> waiting_;
+    Branch branches_[kMostSamples];
+    Ray rays_[kMostSamples];
+    SceneHit hits_[kMostSamples];
+    Surface surfaces_[kMostSamples];
+    Vec3f wo_[kMostSamples];
+    Bsdf glass_[kMostSamples]; // with the eta of its boundary
+    Rgb found_[kMostSamples], added_[kMostSamples];
+    LitPoint points_[kMostSamples];
+    std::size_t of_point_[kMostSamples];
+};
+
+} // namespace
+
+void whitted_radiance(const Scene& scene,
+                      std::uint32_t max_depth,
+                      std::span<const CameraSample> samples,
+                      std::span<Rgb> radiance,
+                      RayTally& tally,
+                      const std::stop_token& stop)
+{
+    TreeRun(scene, max_depth, radiance, tally, stop).run(samples);
+}
+
+} // namespace renderer
