@@ -19,7 +19,7 @@ inline constexpr double kSmoothBelow = 1e-3;
 
 // What every material says of the surface itself.
 struct SurfaceOptions {
-    bool two_sided = true;                // false: from behind it is black
+    bool two_sided = true;                  // false: from behind it is black
     std::optional<TextureUse> normal_map{}; // tilts the shading normal
     friend bool operator==(const SurfaceOptions&, const SurfaceOptions&) = default;
 };

@@ -123,6 +123,12 @@ void DirectLighting::gather(std::span<const LitPoint> points, std::span<Rgb> add
     } else {
         for_all([&](const LitPoint& point, std::size_t i) { add_picked(point, i); });
     }
+    if (const EnvironmentMap* const map = scene_.environment_map())
+        for_all([&](const LitPoint& point, std::size_t i) {
+            const EnvironmentMap::Sample s =
+                map->sample(point.of->two(dimension_of(point.scattering, ScatteringDimension::environment)));
+            if (s.pdf > 0) add(point, i, {s.wi, std::numeric_limits<double>::infinity(), s.radiance, s.pdf});
+        });
     if (!mis_ && !is_black(scene_.environment()))
         for_all([&](const LitPoint& point, std::size_t i) { add_environment_color(point, i); });
 }

@@ -11,6 +11,13 @@ namespace renderer {
 Rgb background(const Scene& scene, Vec3d direction, double drawn_pdf)
 {
     Rgb seen = scene.environment();
+    if (const EnvironmentMap* const map = scene.environment_map()) {
+        if (drawn_pdf > 0)
+            seen += map->radiance(direction) *
+                    static_cast<float>(power_heuristic(drawn_pdf, map->pdf(direction)));
+        else
+            seen += map->interpolated(direction);
+    }
     for (const Sun& sun : scene.suns()) {
         const Rgb disk = radiance_towards(sun, direction);
         if (!is_black(disk))

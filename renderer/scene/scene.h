@@ -13,6 +13,7 @@
 #include "renderer/camera/camera.h"
 #include "renderer/description/report.h"
 #include "renderer/description/scene_description.h"
+#include "renderer/lights/environment_map.h"
 #include "renderer/materials/bsdf.h"
 #include "renderer/materials/media.h"
 #include "renderer/plan/plan.h"
@@ -44,7 +45,8 @@ public:
         Camera camera;
         InstanceTree tree;
         SceneLights lights;
-        Rgb environment; // black: none
+        Rgb environment;                                       // of one colour; black: none
+        std::shared_ptr<const EnvironmentMap> environment_map; // or a picture
         std::vector<Bsdf> bsdfs;
         std::vector<std::shared_ptr<const PreparedMesh>> meshes; // kept alive
         GeometryReport geometry;
@@ -81,6 +83,10 @@ public:
     }
     const Media& media_at_camera() const { return parts_.media_at_camera; }
     Rgb environment() const { return parts_.environment; }
+    const EnvironmentMap* environment_map() const
+    {
+        return parts_.environment_map.get();
+    } // instead; or nullptr
     const GeometryReport& geometry() const { return parts_.geometry; }
     const NumericsReport& numerics() const { return parts_.numerics; }
 

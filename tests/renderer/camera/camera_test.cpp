@@ -113,3 +113,50 @@ TEST(Camera, DividesTheFrustumAmongItsPixelsFromFarAway)
         solid_angle(camera.direction(0, 0), camera.direction(64, 48), camera.direction(0, 48));
     EXPECT_NEAR(sum, whole, 1e-6 * whole);
 }
+
+TEST(Camera, WithALensSeesWhatIsInFocusThroughAllOfIt)
+{
+    CameraDescription d = looking({1, 2, 3}, {1, 2, -1});
+    d.lens_radius_m = 0.5;
+    d.focus_distance_m = 4;
+    const Camera camera(d, 100, 80);
+    ASSERT_TRUE(camera.needs_lens());
+    // The plane of focus is z = -1: every ray of one point of the picture meets it in one point.
+    const auto at_focus = [&](double x, double y, renderer::Sample2 lens) {
+        const renderer::Ray ray = camera.ray(x, y, lens);
+        EXPECT_NEAR(length(ray.direction), 1, 1e-12);
+        EXPECT_LE(length(ray.origin - d.position), 0.5 + 1e-12);
+        return ray.at((-1 - ray.origin.z) / ray.direction.z);
+    };
+    for (const double x : {0.0, 50.0, 99.0}) {
+        const Vec3d want = at_focus(x, 20, {0.5f, 0.5f});
+        for (const renderer::Sample2 lens : {renderer::Sample2{0, 0}, {0.9f, 0.1f}, {0.3f, 0.99f}})
+            EXPECT_NEAR(length(at_focus(x, 20, lens) - want), 0, 1e-12);
+    }
+    // Left out, it is sharp where it looks.
+    d.focus_distance_m.reset();
+    const renderer::Ray ray = Camera(d, 100, 80).ray(50, 40, {0.1f, 0.2f});
+    EXPECT_NEAR(length(ray.at((-1 - ray.origin.z) / ray.direction.z) - Vec3d{1, 2, -1}), 0, 1e-12);
+}
+
+TEST(Camera, OfParallelRaysShowsItsHeightEverywhere)
+{
+    CameraDescription d = looking({0, 0, 5}, {0, 0, 0});
+    d.projection = renderer::Projection::orthographic;
+    d.height_m = 3;
+    const Camera camera(d, 200, 100);
+    EXPECT_EQ(camera.ray(0, 0, {}).direction, (Vec3d{0, 0, -1}));
+    EXPECT_NEAR(length(camera.ray(0, 0, {}).origin - Vec3d{-3, 1.5, 5}), 0, 1e-12);
+    EXPECT_NEAR(length(camera.ray(200, 100, {}).origin - Vec3d{3, -1.5, 5}), 0, 1e-12);
+}
+
+TEST(Camera, AllAroundLooksAlongItsViewInTheCentreAndRightToTheRight)
+{
+    CameraDescription d;
+    d.projection = renderer::Projection::panorama;
+    const Camera camera(d, 400, 200);
+    EXPECT_NEAR(length(camera.ray(200, 100, {}).direction - Vec3d{0, 0, -1}), 0, 1e-15);
+    EXPECT_NEAR(length(camera.ray(300, 100, {}).direction - Vec3d{1, 0, 0}), 0, 1e-15);
+    EXPECT_NEAR(length(camera.ray(0, 100, {}).direction - Vec3d{0, 0, 1}), 0, 1e-15);
+    EXPECT_NEAR(length(camera.ray(77, 0, {}).direction - Vec3d{0, 1, 0}), 0, 1e-15);
+}
