@@ -50,6 +50,9 @@ std::string write_job_view(const JobView& view);
 // A failed job's list of faults is left out: write_job_view has it.
 std::string write_job_list(const std::vector<JobView>& views, const std::string& next_cursor);
 
+// What a dry run answers: the plan's choices and what it predicts.
+std::string write_plan(const renderer::PlanReport& plan, bool pretty = true);
+
 // report.json: accuracy, models, numerics, timing, geometry. `requested`: the request's settings.quality.
 std::string write_report(const renderer::RenderReport& report,
                          const std::string& job_id,

@@ -98,6 +98,20 @@ std::string write_report(const renderer::RenderReport& report,
     return text_of(json, pretty);
 }
 
+std::string write_plan(const renderer::PlanReport& plan, bool pretty)
+{
+    const renderer::Prediction& p = plan.prediction;
+    const Json json{
+        {"models", {{"used", choices(plan.models.used)}, {"skipped", choices(plan.models.skipped)}}},
+        {"prediction",
+         {{"camera_rays", p.camera_rays},
+          {"rays", p.rays},
+          {"memory_bytes", p.memory_bytes},
+          {"seconds", p.seconds},
+          {"threads", p.threads}}}};
+    return text_of(json, pretty);
+}
+
 std::string indented(const std::string& text)
 {
     const Json json = Json::parse(text, nullptr, false);

@@ -26,6 +26,7 @@ struct CommandLine {
     ServiceOptions service;
     RenderOptions render;
     CheckOptions check;
+    PlanOptions plan;
     CompareOptions compare;
     SubmitOptions submit;
     WaitOptions wait;
@@ -140,6 +141,16 @@ void add_check(CommandLine& words)
     command->add_option("scene", words.check.scene, scene_help())->required();
     command->add_flag(
         "--expand", words.check.expand, "print the job with every default and assumption written out");
+}
+
+void add_plan(CommandLine& words)
+{
+    CLI::App* command =
+        add_command(words,
+                    "plan",
+                    "tell which models a scene needs and why, and what rendering it will take",
+                    [&words](const auto&) { return plan_command(words.plan); });
+    command->add_option("scene", words.plan.scene, scene_help())->required();
 }
 
 void add_compare(CommandLine& words)
@@ -266,6 +277,7 @@ int run_command_line(int argc, char** argv)
     words->app.footer(footer_text());
     add_render(*words);
     add_check(*words);
+    add_plan(*words);
     add_compare(*words);
     add_making(*words);
     add_looking(*words);

@@ -1,4 +1,4 @@
-// Commands that need no service: render, check, compare.
+// Commands that need no service: render, check, plan, compare.
 //
 // Each prints what it has to say and returns the exit code; UserError for what the user can mend.
 #pragma once
@@ -31,6 +31,12 @@ struct CheckOptions {
     bool expand = false;
 };
 ExitCode check_command(const CheckOptions& options);
+
+// Prints the plan as JSON: what is used, what is left out, what it will take.
+struct PlanOptions {
+    std::string scene;
+};
+ExitCode plan_command(const PlanOptions& options);
 
 struct CompareOptions {
     std::string picture, reference;

@@ -32,6 +32,22 @@ struct NumericsReport {
         precision; // of the corners of meshes: "float", "double" or "mixed"; hits are decided in double
 };
 
+// What a render will take, from counts alone: rays and memory within a small factor, time only as an order of
+// magnitude, since it is a nominal cost a ray.
+struct Prediction {
+    std::uint64_t camera_rays = 0;
+    double rays = 0; // in all
+    std::uint64_t memory_bytes = 0;
+    double seconds = 0; // on `threads`
+    std::uint32_t threads = 0;
+};
+
+// A plan in words and numbers, for whoever asks before rendering.
+struct PlanReport {
+    ModelReport models;
+    Prediction prediction;
+};
+
 enum class StopReason : std::uint8_t { samples, time };
 
 struct AccuracyReport {

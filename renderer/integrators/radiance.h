@@ -41,7 +41,8 @@ struct RayTally {
     std::uint64_t bounce_rays = 0;
     std::uint64_t non_finite_samples = 0; // dropped: they add nothing to their pixel
     std::uint64_t clamped = 0;            // contributions that `clamp` cut
-    double cut_weight = 0;                // of branches that were not followed, in shares of a camera ray
+    double cut_weight =
+        0; // of branches that were not followed: most of the light outside that they could have added, a camera ray being 1
     RayTally& operator+=(const RayTally& o)
     {
         camera_rays += o.camera_rays;

@@ -130,11 +130,14 @@ private:
         branch.weight = from.weight * lobe.weight;
         const float carried = strongest(branch.weight);
         if (carried == 0) return;
+        if (lobe.is_transmission) branch.media.cross(hit.instance, bsdf.medium, surface.is_outside);
         if (from.depth >= max_depth_ || carried < kLeastWeight) {
-            tally_.cut_weight += static_cast<double>(carried);
+            // Within glass of index n radiance is n^2 times what it came from.
+            const double n =
+                branch.media.here() != nullptr ? static_cast<double>(branch.media.here()->ior) : 1;
+            tally_.cut_weight += static_cast<double>(carried) * n * n;
             return;
         }
-        if (lobe.is_transmission) branch.media.cross(hit.instance, bsdf.medium, surface.is_outside);
         branch.ray = Ray{offset_origin(surface.point, way), way};
         ++branch.depth;
         waiting_.push_back(branch);

@@ -5,6 +5,7 @@
 #include "renderer/plan/choose_transport.h"
 #include "renderer/plan/explain_numerics.h"
 #include "renderer/plan/plan.h"
+#include "renderer/plan/predict_cost.h"
 #include "renderer/plan/world_frame.h"
 
 #include <utility>
@@ -33,6 +34,7 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     plan.picks_lights = transport.picks_lights;
     plan.world_origin = choose_world_origin(description, meshes);
     plan.precision = corner_precision(description, meshes);
+    plan.prediction = predict_cost(description, settings, budget, transport);
     plan.models = explain(scene, meshes, settings, budget, std::move(transport));
     explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);
     return plan;

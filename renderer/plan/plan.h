@@ -64,6 +64,7 @@ struct Plan {
     Vec3d world_origin{};      // of the frame that is traced in, in the world: see world_frame.h
     std::string precision;     // of the meshes' corners: "float", "double" or "mixed"
     ModelReport models;
+    Prediction prediction;
 };
 
 // Either a plan or every fault: a part that no mesh has, a singular transform, a budget exceeded (with the

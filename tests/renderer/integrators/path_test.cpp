@@ -259,7 +259,8 @@ std::pair<double, double> mean_by(const TestScene& test, LightSearch search)
                 std::vector<CameraSample> samples;
                 for (std::uint32_t s = 0; s < kSamples; ++s) {
                     const Sample2 u = sampler.sample_2d(s, 0);
-                    samples.push_back({ready.scene->camera().ray(x + static_cast<double>(u.u0), y + static_cast<double>(u.u1), {}),
+                    samples.push_back({ready.scene->camera().ray(
+                                           x + static_cast<double>(u.u0), y + static_cast<double>(u.u1), {}),
                                        &sampler,
                                        s});
                 }
@@ -288,7 +289,9 @@ TEST(Path, FindsTheSameLightByAskingLightsByTheMaterialsRaysAndByBoth)
         test.description.transport.type = TransportType::path;
         const auto both = mean_by(test, LightSearch::both), lights = mean_by(test, LightSearch::lights),
                    material = mean_by(test, LightSearch::material);
-        const auto apart = [](auto a, auto b) { return 4 * std::sqrt(a.second * a.second + b.second * b.second); };
+        const auto apart = [](auto a, auto b) {
+            return 4 * std::sqrt(a.second * a.second + b.second * b.second);
+        };
         EXPECT_GT(both.first, 0.01) << number;
         EXPECT_NEAR(both.first, lights.first, apart(both, lights)) << number;
         EXPECT_NEAR(both.first, material.first, apart(both, material)) << number;

@@ -1,0 +1,56 @@
+#include "renderer/plan/predict_cost.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace renderer {
+
+namespace {
+
+// A ray with its shading on one thread of a processor of the 2020s; scenes differ by several times either way.
+constexpr double kSecondsARay = 0.7e-6;
+// Scatterings of a path that roulette ends, at albedos about one half.
+constexpr double kUsualScatterings = 3;
+
+double rays_a_sample(const SceneDescription& scene, const TransportChoice& transport)
+{
+    const bool sky = scene.environment && !std::holds_alternative<NoEnvironment>(*scene.environment);
+    // Asked at each point: every light, or one of them.
+    const double lights = transport.picks_lights ? 1 : static_cast<double>(scene.lights.size());
+    switch (transport.integrator) {
+    case Integrator::normals:
+        return 1;
+    case Integrator::ambient_occlusion:
+        return 2;
+    case Integrator::direct:
+        return 1 + lights + (sky ? 1 : 0);
+    case Integrator::whitted:
+        return std::min(4.0, 1.0 + transport.max_depth) * (1 + lights);
+    case Integrator::path:
+        return 1 + std::min(kUsualScatterings, static_cast<double>(transport.max_depth)) * (1 + lights);
+    }
+    return 1;
+}
+
+} // namespace
+
+Prediction predict_cost(const SceneDescription& scene,
+                        const RenderSettings& settings,
+                        const Budget& budget,
+                        const TransportChoice& transport)
+{
+    Prediction p;
+    const QualitySettings& quality = settings.quality;
+    const std::uint64_t samples =
+        quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);
+    p.camera_rays = budget.pixels * samples;
+    p.rays = static_cast<double>(p.camera_rays) * rays_a_sample(scene, transport);
+    p.memory_bytes = std::max(budget.film_bytes, budget.building_bytes) + budget.mesh_bytes;
+    const std::uint32_t asked = settings.acceleration.threads;
+    p.threads = asked != 0 ? asked : std::max(1u, std::thread::hardware_concurrency());
+    p.seconds = p.rays * kSecondsARay / p.threads;
+    if (quality.time_s && !quality.samples) p.seconds = std::min(p.seconds, *quality.time_s);
+    return p;
+}
+
+} // namespace renderer
