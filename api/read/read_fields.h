@@ -9,6 +9,7 @@
 #include "api/json/json.h"
 #include "api/read/fault_list.h"
 #include "api/words/word_table.h"
+#include "renderer/description/atmosphere.h"
 #include "renderer/description/texture.h"
 
 #include <array>
@@ -120,6 +121,11 @@ public:
     }
     void table(const char* name, std::vector<renderer::NamedMaterial>& materials, const char*);
 
+    // One number, which stands for all wavelengths, or an array of them.
+    void coefficients(const char* name, std::vector<double>& values, const Range& range, const char* doc);
+    // Starts from what the word stands for: visited before every other member.
+    void preset(const char* name, renderer::AtmosphereDescription& atmosphere, const char* doc);
+
     void unbuilt(std::initializer_list<const char*> names, const char* remedy);
     void needs(std::initializer_list<const char*> names);
     void exclude(const char* a, const char* b, const char* remedy);
@@ -141,6 +147,14 @@ public:
     void files(std::map<std::string, std::string>& files);
     void labels(std::map<std::string, std::string>& labels);
     void fail_on(std::vector<std::string>& words);
+
+    // The whole text is one thing whose `type` says what it is.
+    template <typename V>
+    static void read_alone(const Json& root, ReadState& state, V& value)
+    {
+        ReadFields child(root, "", state);
+        if (child.alternative_named("type", value)) child.finish();
+    }
 
 private:
     template <typename T>

@@ -73,6 +73,26 @@ void ReadFields::color(const char* name,
     if (read.r >= 0) value = read;
 }
 
+void ReadFields::coefficients(const char* name, std::vector<double>& values, const Range& range, const char*)
+{
+    const Json* node = find(name);
+    if (!node) return;
+    if (!node->is_array()) {
+        if (const std::optional<double> read = one_number(*node, at(name), range)) values = {*read};
+        return;
+    }
+    if (node->empty() || node->size() > renderer::kMostWavelengths)
+        return fault(at(name),
+                     "wrong_length",
+                     "expected a number or 1 to " + std::to_string(renderer::kMostWavelengths) +
+                         " of them, got " + std::to_string(node->size()));
+    std::vector<double> read;
+    for (std::size_t i = 0; i < node->size(); ++i)
+        if (const std::optional<double> value = one_number((*node)[i], at(name, i), range))
+            read.push_back(*value);
+    if (read.size() == node->size()) values = std::move(read);
+}
+
 std::optional<std::uint64_t> ReadFields::whole(const char* name, const WholeRange& range)
 {
     const Json* node = find(name);

@@ -4,6 +4,7 @@
 // scene.md knows and this build does not answers `unsupported`, one that nobody knows `unknown_value`.
 #pragma once
 
+#include "renderer/description/atmosphere.h"
 #include "renderer/description/scene_description.h"
 #include "renderer/description/settings.h"
 
@@ -72,6 +73,16 @@ template <>
 WordTable words_for<renderer::Light>();
 template <>
 WordTable words_for<renderer::Environment>();
+template <>
+WordTable words_for<std::variant<renderer::AtmosphereDescription>>(); // an environment that stands alone
+template <>
+WordTable words_for<renderer::AtmospherePreset>();
+template <>
+WordTable words_for<renderer::MiePhase>();
+template <>
+WordTable words_for<renderer::SkyScattering>();
+template <>
+WordTable words_for<renderer::SkyMode>();
 template <>
 WordTable words_for<renderer::PhongForm>();
 template <>

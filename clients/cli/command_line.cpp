@@ -5,6 +5,7 @@
 #include "clients/cli/interrupt.h"
 #include "clients/cli/local_commands.h"
 #include "clients/cli/remote_commands.h"
+#include "clients/cli/sky_options.h"
 #include "clients/cli/user_error.h"
 #include "renderer/description/mesh_formats.h"
 
@@ -28,6 +29,7 @@ struct CommandLine {
     CheckOptions check;
     PlanOptions plan;
     CompareOptions compare;
+    SkyOptions sky;
     SubmitOptions submit;
     WaitOptions wait;
     FetchOptions fetch;
@@ -279,6 +281,7 @@ int run_command_line(int argc, char** argv)
     add_check(*words);
     add_plan(*words);
     add_compare(*words);
+    add_sky_commands(words->app, words->sky, [&words](Action action) { words->action = std::move(action); });
     add_making(*words);
     add_looking(*words);
     add_ending(*words);

@@ -16,36 +16,40 @@ struct Sample {
 };
 
 // Points crowd at the low end of each part, where the air is.
-std::vector<Sample> samples_along(const PlanetRay& ray, double top, std::size_t points)
+std::vector<Sample>
+samples_along(const PlanetRay& ray, double top, std::size_t points, const std::vector<double>& edges)
 {
     const PlanetRay::Reach reach = ray.reach(top);
     if (!(reach.end > reach.begin)) return {};
+    std::vector<double> stops{reach.begin, reach.end, 0};
+    for (const double s : edges)
+        stops.push_back(ray.start() + s);
+    std::erase_if(stops, [&](double u) { return !(u >= reach.begin && u <= reach.end); });
+    std::sort(stops.begin(), stops.end());
     const GaussLegendre rule(points);
     std::vector<Sample> samples;
-    const auto part = [&](double low, double high) { // low may be beyond high: then backwards
-        for (std::size_t i = 0; i < points; ++i) {
-            const double t = rule.x[i];
-            samples.push_back({low + (high - low) * t * t, rule.weight[i] * 2 * t * std::abs(high - low)});
+    for (std::size_t part = 0; part + 1 < stops.size(); ++part) {
+        const bool rising = stops[part] >= 0;
+        const double low = stops[rising ? part : part + 1], length = stops[part + 1] - stops[part];
+        for (std::size_t i = 0; i < points && length > 0; ++i) {
+            const double t = rule.x[rising ? i : points - 1 - i];
+            samples.push_back({low + (rising ? length : -length) * t * t,
+                               rule.weight[rising ? i : points - 1 - i] * 2 * t * length});
         }
-    };
-    if (reach.begin >= 0)
-        part(reach.begin, reach.end);
-    else if (reach.end <= 0)
-        part(reach.end, reach.begin);
-    else {
-        part(0, reach.begin);
-        part(0, reach.end);
     }
-    std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.u < b.u; });
     return samples;
 }
 
 } // namespace
 
-LightPath light_path(const Air& air, const LightGrid& grid, const PlanetRay& ray, std::size_t points)
+LightPath light_path(const Air& air,
+                     const LightGrid* grid,
+                     const PlanetRay& ray,
+                     std::size_t points,
+                     const std::vector<double>& edges)
 {
     const std::size_t groups = lane_groups(air.wavelengths);
-    const std::vector<Sample> samples = samples_along(ray, air.height_m, points);
+    const std::vector<Sample> samples = samples_along(ray, air.height_m, points, edges);
     LightPath path;
     path.start_radius = ray.radius_at(ray.start());
     path.rayleigh.assign(groups * samples.size(), Lanes{});
@@ -62,8 +66,8 @@ LightPath light_path(const Air& air, const LightGrid& grid, const PlanetRay& ray
                                1 / ray.radius_at(u),
                                static_cast<float>(mu),
                                static_cast<float>(std::sqrt(std::max(0.0, 1 - mu * mu))),
-                               grid.altitude_at(static_cast<float>(altitude)),
-                               grid.out_angle_at(arc_cosine(static_cast<float>(mu)))});
+                               grid ? grid->altitude_at(static_cast<float>(altitude)) : Between{},
+                               grid ? grid->out_angle_at(arc_cosine(static_cast<float>(mu))) : Between{}});
         const Columns density = air.density(altitude);
         for (std::size_t w = 0; w < air.wavelengths; ++w) {
             const double reaching = samples[i].weight * air.transmittance(w, way);

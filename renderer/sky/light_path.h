@@ -30,7 +30,12 @@ struct LightPath {
     std::vector<Lanes> ground; // transmittance to where the ground is hit, [group]
 };
 
-// `points` a side of the closest approach.
-LightPath light_path(const Air& air, const LightGrid& grid, const PlanetRay& ray, std::size_t points);
+// `points` a side of the closest approach, and of each of `edges`: distances from the eye at which light steps. `grid`:
+// null where the places are not looked up in one.
+LightPath light_path(const Air& air,
+                     const LightGrid* grid,
+                     const PlanetRay& ray,
+                     std::size_t points,
+                     const std::vector<double>& edges = {});
 
 } // namespace renderer

@@ -3,6 +3,7 @@
 #include "renderer/math/transcendental.h"
 #include "renderer/sky/arc_cosine.h"
 #include "renderer/sky/phase.h"
+#include "renderer/sky/sky_sun.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +35,7 @@ struct ScatteredLight::Site {
     {
         for (const double mu : directions.mu)
             paths.push_back(
-                light_path(air, grid, PlanetRay(air.radius_m, altitude, mu), grid.resolution().points));
+                light_path(air, &grid, PlanetRay(air.radius_m, altitude, mu), grid.resolution().points));
     }
     Site(const Site&) = delete; // the kernel refers to its directions
 };
@@ -139,17 +140,6 @@ void ScatteredLight::add(const Source& more, Lanes times, Source& to)
         to.ground[i] += more.ground[i] * times;
 }
 
-Lanes ScatteredLight::sun_transmittance(std::size_t group, double altitude, double mu_sun) const
-{
-    Lanes result{};
-    if (PlanetRay(air_.radius_m, altitude, mu_sun).hits_ground()) return result;
-    const Columns columns = columns_.at(altitude, mu_sun);
-    const std::size_t first = group * kLanes, count = std::min(kLanes, air_.wavelengths - first);
-    for (std::size_t lane = 0; lane < count; ++lane)
-        result[lane] = static_cast<float>(air_.transmittance(first + lane, columns));
-    return result;
-}
-
 void ScatteredLight::light_from_sun(std::size_t group,
                                     const Site& site,
                                     std::size_t sun,
@@ -174,13 +164,14 @@ void ScatteredLight::light_from_sun(std::size_t group,
                 const LightPath::Place& place = path.places[i];
                 const double mu_sun = (path.start_radius * sun_mu + place.along * nu) * place.inverse_radius;
                 sum += (path.rayleigh[group * places + i] * rayleigh + path.mie[group * places + i] * mie) *
-                       sun_transmittance(group, place.altitude, std::clamp(mu_sun, -1.0, 1.0));
+                       SunThroughAir(air_, columns_, place.altitude, std::clamp(mu_sun, -1.0, 1.0))
+                           .transmittance(air_, group);
             }
             if (path.hits_ground) {
                 const double mu_sun = (path.start_radius * sun_mu + path.ground_along * nu) / air_.radius_m;
                 if (mu_sun > 0)
                     sum += path.ground[group] * albedo_over_pi_[group] * splat(static_cast<float>(mu_sun)) *
-                           sun_transmittance(group, 0, std::min(1.0, mu_sun));
+                           SunThroughAir(air_, columns_, 0, std::min(1.0, mu_sun)).transmittance(air_, group);
             }
             light[j * azimuths + p] = sum;
         }
@@ -274,7 +265,7 @@ Lanes ScatteredLight::gather(
 
 LightPath ScatteredLight::path(const PlanetRay& ray) const
 {
-    return light_path(air_, grid_, ray, kPointsFromEye);
+    return light_path(air_, &grid_, ray, kPointsFromEye);
 }
 
 Spectrum ScatteredLight::radiance(const LightPath& path, double mu_sun, double nu) const

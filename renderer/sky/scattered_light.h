@@ -70,7 +70,6 @@ private:
     void scatter(std::size_t group, const Site& site, std::size_t item, Scratch& scratch, Source& to) const;
     [[nodiscard]] Lanes
     gather(const Source& source, const LightPath& path, std::size_t group, double mu_sun, double nu) const;
-    [[nodiscard]] Lanes sun_transmittance(std::size_t group, double altitude, double mu_sun) const;
 
     const Air& air_;
     const ColumnTable& columns_;

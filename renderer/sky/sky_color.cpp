@@ -1,0 +1,80 @@
+#include "renderer/sky/sky_color.h"
+
+#include "renderer/math/transcendental.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace renderer {
+
+namespace {
+
+// Lobe of other widths below and above its middle.
+double lobe(double nm, double middle, double below, double above)
+{
+    const double t = (nm - middle) * (nm < middle ? below : above);
+    return exp(-0.5 * t * t);
+}
+
+std::array<double, 3> rec709_of(double nm)
+{
+    const double x = 0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
+                     0.065 * lobe(nm, 501.1, 0.0490, 0.0382);
+    const double y = 0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322);
+    const double z = 1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725);
+    return {3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
+            -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
+            0.0556434 * x - 0.2040259 * y + 1.0572252 * z};
+}
+
+// Of a black body of 5778 K, in any unit.
+double sunlight(double nm)
+{
+    const double um = nm * 1e-3, um5 = um * um * um * um * um;
+    return 1 / (um5 * (exp(14387.77 / (um * 5778)) - 1));
+}
+
+} // namespace
+
+SkyColor::SkyColor(const std::vector<double>& wavelengths_nm, Rgb irradiance)
+    : weight_(wavelengths_nm.size()), irradiance_(irradiance)
+{
+    const std::size_t n = wavelengths_nm.size();
+    if (n == 3) {
+        std::array<std::size_t, 3> order{0, 1, 2};
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return wavelengths_nm[a] > wavelengths_nm[b];
+        });
+        for (std::size_t c = 0; c < 3; ++c)
+            weight_[order[c]][c] = 1;
+        return;
+    }
+    std::array<double, 3> sum{};
+    for (std::size_t w = 0; w < n; ++w) {
+        weight_[w] = rec709_of(wavelengths_nm[w]);
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[c] += weight_[w][c] *= sunlight(wavelengths_nm[w]);
+    }
+    for (auto& weight : weight_)
+        for (std::size_t c = 0; c < 3; ++c)
+            weight[c] = sum[c] > 0 ? weight[c] / sum[c] : 1 / static_cast<double>(n);
+}
+
+Rgb SkyColor::share(const Spectrum& spectrum) const
+{
+    std::array<double, 3> sum{};
+    for (std::size_t w = 0; w < weight_.size(); ++w)
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[c] += weight_[w][c] * spectrum[w];
+    // Colours outside Rec. 709 lose what is below 0.
+    return {static_cast<float>(std::max(0.0, sum[0])),
+            static_cast<float>(std::max(0.0, sum[1])),
+            static_cast<float>(std::max(0.0, sum[2]))};
+}
+
+Rgb SkyColor::operator()(const Spectrum& spectrum) const
+{
+    return share(spectrum) * irradiance_;
+}
+
+} // namespace renderer

@@ -1,0 +1,34 @@
+// SkyColor: from the wavelengths of an atmosphere to linear Rec. 709.
+//
+// Three wavelengths stand for red, green and blue as they are, longest first; any other number is weighted by the eye's
+// colour matching and the sun's spectrum, and white is the sun above the air: a sky that took nothing from its light
+// would have the colour of the irradiance.
+//
+// Source  Wyman, Sloan, Shirley, "Simple Analytic Approximations to the CIE XYZ Color Matching Functions", 2013; the
+//         sun as a black body of 5778 K.
+#pragma once
+
+#include "renderer/color/rgb.h"
+#include "renderer/sky/air.h"
+
+#include <array>
+#include <vector>
+
+namespace renderer {
+
+class SkyColor {
+public:
+    // `irradiance`: the sun's above the air, W/m^2 a channel.
+    SkyColor(const std::vector<double>& wavelengths_nm, Rgb irradiance);
+
+    // From L / E0 (or E / E0) at each wavelength.
+    [[nodiscard]] Rgb operator()(const Spectrum& spectrum) const;
+    // A share that is taken or left, without the irradiance: of white, white is left.
+    [[nodiscard]] Rgb share(const Spectrum& spectrum) const;
+
+private:
+    std::vector<std::array<double, 3>> weight_; // one a wavelength; each channel sums to 1
+    Rgb irradiance_;
+};
+
+} // namespace renderer

@@ -1,0 +1,127 @@
+#include "renderer/math/transcendental.h"
+#include "renderer/sky/sky_light.h"
+#include "tests/support/random_numbers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace renderer;
+
+namespace {
+
+AtmosphereDescription single(double elevation_deg)
+{
+    AtmosphereDescription d = atmosphere_preset(AtmospherePreset::reference_b);
+    d.scattering = SkyScattering::single;
+    d.sun.elevation_deg = elevation_deg;
+    d.sun.irradiance = {1, 1, 1};
+    return d;
+}
+
+Vec3d direction(double elevation_deg, double azimuth_deg)
+{
+    const auto [sine, cosine] = sin_cos_deg(elevation_deg);
+    const auto [east, north] = sin_cos_deg(azimuth_deg);
+    return {cosine * east, sine, -cosine * north};
+}
+
+} // namespace
+
+TEST(SkyLight, IsTheSkyAsQuadratureHasIt)
+{
+    ThreadPool pool(2);
+    for (const double altitude : {0.0, 3000.0, 1e6}) {
+        AtmosphereDescription d = single(25);
+        d.sun.azimuth_deg = 70;
+        d.altitude_m = altitude;
+        const SkyLight light(d, pool);
+        tests::RandomNumbers random(5);
+        double sum2 = 0, mean = 0;
+        const int count = 200;
+        for (int i = 0; i < count; ++i) {
+            const double elevation = random.between(-90, 90), azimuth = random.between(0, 360);
+            const Rgb found = light.radiance(direction(elevation, azimuth));
+            const Spectrum exact =
+                light.sky()
+                    .radiance(SkyGeometry::from_angles_deg(altitude, 65, 90 - elevation, azimuth - 70))
+                    .single;
+            sum2 += (static_cast<double>(found.b) - exact[2]) * (static_cast<double>(found.b) - exact[2]);
+            mean += exact[2] / count;
+        }
+        EXPECT_LT(std::sqrt(sum2 / count), 0.01 * mean) << altitude;
+    }
+}
+
+TEST(SkyLight, SunsDiskHoldsItsIrradiance)
+{
+    ThreadPool pool(1);
+    for (const bool darkened : {false, true}) {
+        AtmosphereDescription d = single(60);
+        d.sun.limb_darkening = darkened;
+        const SkyLight light(d, pool);
+        const double radius = light.sun_radius_rad();
+        EXPECT_NEAR(radius, 0.004675, 1e-6);
+        // Rings of equal solid angle about the sun, eight places on each.
+        const int rings = 400;
+        double sum = 0;
+        const Vec3d side{1, 0, 0}, other = cross(light.sun_direction(), side);
+        for (int i = 0; i < rings; ++i) {
+            const double off = sin_cos(radius).first * std::sqrt((i + 0.5) / rings);
+            for (int k = 0; k < 8; ++k) {
+                const auto [s, c] = sin_cos_deg(45.0 * k);
+                const Vec3d at =
+                    light.sun_direction() * std::sqrt(1 - off * off) + side * (off * c) + other * (off * s);
+                sum += static_cast<double>(light.sun_radiance(at).g) / (8 * rings);
+            }
+        }
+        const double solid_angle = kPi * sin_cos(radius).first * sin_cos(radius).first;
+        EXPECT_NEAR(sum * solid_angle / static_cast<double>(light.sun_irradiance().g), 1, 1e-4);
+        EXPECT_EQ(light.sun_radiance(direction(60.3, 0)).g, 0);
+        EXPECT_EQ(light.sun_radiance(direction(-60, 180)).g, 0);
+    }
+}
+
+TEST(SkyLight, TurnsWithItsSun)
+{
+    ThreadPool pool(1);
+    AtmosphereDescription d = single(20);
+    const SkyLight north(d, pool);
+    d.sun.azimuth_deg = 123;
+    const SkyLight turned(d, pool);
+    const Rgb a = north.radiance(direction(10, 40)), b = turned.radiance(direction(10, 163));
+    EXPECT_NEAR(a.r / b.r, 1, 1e-5);
+    const Rgb mirrored = north.radiance(direction(10, -40));
+    EXPECT_NEAR(a.b / mirrored.b, 1, 1e-5);
+}
+
+TEST(SkyLight, PutsThePanoramasPixelsWhereTheyLook)
+{
+    ThreadPool pool(2);
+    AtmosphereDescription d = single(30);
+    d.sun.azimuth_deg = -40;
+    const SkyLight light(d, pool);
+    const SkyPanorama picture = light.panorama(32, 16, pool);
+    for (const std::size_t y : {0u, 6u, 9u})
+        for (const std::size_t x : {0u, 13u, 31u}) {
+            const Rgb expected = light.radiance(direction(90 - 180 * (static_cast<double>(y) + 0.5) / 16,
+                                                          360 * ((static_cast<double>(x) + 0.5) / 32 - 0.5)));
+            EXPECT_NEAR(picture.pixels[y * 32 + x].r / expected.r, 1, 1e-4) << x << ' ' << y;
+        }
+}
+
+TEST(SkyLight, AirBetweenPointsIsThatOfTheirWay)
+{
+    ThreadPool pool(1);
+    const SkyLight light(single(40), pool);
+    const Vec3d eye{0, 100, 0}, near{300, 250, -4000}, far = eye + (near - eye) * 2.0;
+    const auto first = light.between(eye, near), second = light.between(near, far),
+               whole = light.between(eye, far);
+    EXPECT_NEAR(first.transmittance.b * second.transmittance.b, whole.transmittance.b, 1e-5f);
+    EXPECT_NEAR(first.added.b + first.transmittance.b * second.added.b, whole.added.b, 1e-3f * whole.added.b);
+    EXPECT_EQ(light.between(eye, eye).added.r, 0);
+    // To the top of the air: all of the sky's light.
+    const Vec3d up = direction(50, 200);
+    const Rgb sky = light.radiance(up);
+    EXPECT_NEAR(light.between({0, 0, 0}, up * 90'000.0).added.b / sky.b, 1, 0.02);
+}
