@@ -8,7 +8,7 @@
 //
 // A visitor has: number, integer, boolean, word, only, point, direction, color, textured_number,
 // textured_color, extents, object, group, kinds, list, table, unbuilt, needs, exclude, only_when, and the few
-// below that stand for one place alone: aim, sun_angles, geometry, material_of, placement, files, labels, fail_on.
+// below that stand for one place alone: aim, sun_angles, geometry, material_of, metal_of, placement, files, labels, fail_on.
 #pragma once
 
 #include "api/fields/camera_fields.h"

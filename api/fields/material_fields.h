@@ -8,9 +8,10 @@
 namespace api {
 
 template <typename V, Sees<renderer::SurfaceOptions> X>
-void surface_fields(V& v, X&)
+void surface_fields(V& v, X& surface)
 {
-    v.unbuilt({"normal_map", "two_sided"}, "leave it out");
+    v.boolean("two_sided", surface.two_sided, "false: from behind it is black");
+    v.unbuilt({"normal_map"}, "leave it out");
 }
 
 template <typename V, Sees<renderer::DiffuseMaterial> X>
@@ -28,6 +29,20 @@ void fields(V& v, X& material)
     v.number("shininess", material.shininess, kShininess, "exponent n of the highlight");
     v.color("ambient", material.ambient, kRadiometric, "radiance added whatever the light, W/(m^2 sr)");
     v.word("form", material.form, "classic: as Phong wrote it; normalized: conserves energy");
+    surface_fields(v, material.surface);
+}
+
+inline constexpr const char* kMultiscatterDoc =
+    "light that meets several facets; auto: where roughness is above 0.2 or a texture";
+
+template <typename V, Sees<renderer::CookTorranceMaterial> X>
+void fields(V& v, X& material)
+{
+    v.textured_color("base_color", material.base_color, kReflectance, "of the base, or of the metal");
+    v.textured_number("metallic", material.metallic, kShare, "0: a base under varnish; 1: metal");
+    v.textured_number("roughness", material.roughness, kShare, "0: smooth; the facets' alpha is its square");
+    v.number("ior", material.ior, kIor, "index of refraction of the varnish");
+    v.word("multiscatter", material.multiscatter, kMultiscatterDoc);
     surface_fields(v, material.surface);
 }
 
@@ -55,10 +70,10 @@ void fields(V& v, X& material)
 template <typename V, Sees<renderer::ConductorMaterial> X>
 void fields(V& v, X& material)
 {
-    v.color("eta", material.eta, kIor, "real part of the index of refraction");
-    v.color("k", material.k, kExtinction, "imaginary part of the index of refraction");
+    v.metal_of(material.ior);
     v.textured_number(
         "roughness", material.roughness, kShare, "0: a mirror; the facets' alpha is its square");
+    v.word("multiscatter", material.multiscatter, kMultiscatterDoc);
     surface_fields(v, material.surface);
 }
 

@@ -143,6 +143,7 @@ public:
     void sun_angles(renderer::Vec3d& travels); // instead of `direction`: where it stands
     void geometry(renderer::Shape& shape);
     void material_of(std::optional<std::uint32_t>& material);
+    void metal_of(std::variant<renderer::Metal, renderer::ComplexIor>& ior);
     void placement(renderer::Affine3& world_from_object);
     void files(std::map<std::string, std::string>& files);
     void labels(std::map<std::string, std::string>& labels);

@@ -86,6 +86,25 @@ void ReadFields::material_of(std::optional<std::uint32_t>& material)
                   did_you_mean(name, state_.material_names));
 }
 
+void ReadFields::metal_of(std::variant<renderer::Metal, renderer::ComplexIor>& ior)
+{
+    constexpr const char* one_of_them = "give the metal's name, or its eta and k";
+    exclude("metal", "eta", one_of_them);
+    exclude("metal", "k", one_of_them);
+    renderer::Metal metal{};
+    const bool is_named = node_ && node_->contains("metal");
+    word("metal", metal, nullptr);
+    renderer::ComplexIor given;
+    color("eta", given.eta, kIor, nullptr);
+    color("k", given.k, kExtinction, nullptr);
+    if (is_named) {
+        ior = metal;
+    } else if (node_ && (node_->contains("eta") || node_->contains("k"))) {
+        needs({"eta", "k"});
+        ior = given;
+    }
+}
+
 void ReadFields::geometry(renderer::Shape& shape)
 {
     if (!node_) return;

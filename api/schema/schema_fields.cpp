@@ -124,6 +124,16 @@ void SchemaFields::material_of(const std::optional<std::uint32_t>&)
              "name in materials; left out: the mesh's own, else a default diffuse"));
 }
 
+void SchemaFields::metal_of(const std::variant<renderer::Metal, renderer::ComplexIor>& ior)
+{
+    word("metal", std::get<renderer::Metal>(ior), "by name; eta and k are measured ones");
+    put("eta", numbers(kIor, 3, nullptr, "real part of the index of refraction, instead of a name"));
+    put("k", numbers(kExtinction, 3, nullptr, "imaginary part of the index of refraction"));
+    exclude("metal", "eta", nullptr);
+    exclude("metal", "k", nullptr);
+    schema_["dependentRequired"] = {{"eta", Json::array({"k"})}, {"k", Json::array({"eta"})}};
+}
+
 void SchemaFields::placement(const renderer::Affine3&)
 {
     Json scale{{"oneOf", Json::array({within(kCoordinate), numbers(kCoordinate, 3, nullptr, nullptr)})}};

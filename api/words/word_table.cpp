@@ -14,7 +14,9 @@ using renderer::BvhWidth;
 using renderer::Environment;
 using renderer::Light;
 using renderer::Material;
+using renderer::Metal;
 using renderer::MeterQuantity;
+using renderer::Multiscatter;
 using renderer::PhongForm;
 using renderer::Projection;
 using renderer::Shading;
@@ -27,7 +29,7 @@ WordTable words_for<Material>()
 {
     static constexpr std::array words{alternative<Material, renderer::DiffuseMaterial>("diffuse"),
                                       alternative<Material, renderer::PhongMaterial>("phong"),
-                                      Word{"cook_torrance"},
+                                      alternative<Material, renderer::CookTorranceMaterial>("cook_torrance"),
                                       alternative<Material, renderer::MirrorMaterial>("mirror"),
                                       alternative<Material, renderer::GlassMaterial>("glass"),
                                       alternative<Material, renderer::ConductorMaterial>("conductor"),
@@ -73,6 +75,31 @@ WordTable words_for<PhongForm>()
 {
     static constexpr std::array words{enumerator("classic", PhongForm::classic),
                                       enumerator("normalized", PhongForm::normalized)};
+    return words;
+}
+
+template <>
+WordTable words_for<Multiscatter>()
+{
+    static constexpr std::array words{enumerator("auto", Multiscatter::automatic),
+                                      enumerator("on", Multiscatter::on),
+                                      enumerator("off", Multiscatter::off)};
+    return words;
+}
+
+template <>
+WordTable words_for<Metal>()
+{
+    static constexpr std::array words{enumerator("aluminium", Metal::aluminium),
+                                      enumerator("chromium", Metal::chromium),
+                                      enumerator("copper", Metal::copper),
+                                      enumerator("gold", Metal::gold),
+                                      enumerator("iron", Metal::iron),
+                                      enumerator("nickel", Metal::nickel),
+                                      enumerator("platinum", Metal::platinum),
+                                      enumerator("silver", Metal::silver),
+                                      enumerator("titanium", Metal::titanium),
+                                      enumerator("tungsten", Metal::tungsten)};
     return words;
 }
 

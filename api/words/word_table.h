@@ -86,6 +86,10 @@ WordTable words_for<renderer::SkyMode>();
 template <>
 WordTable words_for<renderer::PhongForm>();
 template <>
+WordTable words_for<renderer::Multiscatter>();
+template <>
+WordTable words_for<renderer::Metal>();
+template <>
 WordTable words_for<renderer::Shading>();
 template <>
 WordTable words_for<renderer::TransportType>();

@@ -127,6 +127,7 @@ public:
     void sun_angles(const renderer::Vec3d&) {} // written as a direction
     void geometry(const renderer::Shape& shape);
     void material_of(const std::optional<std::uint32_t>& material);
+    void metal_of(const std::variant<renderer::Metal, renderer::ComplexIor>& ior);
     void placement(const renderer::Affine3& world_from_object);
     void files(const std::map<std::string, std::string>& files) { out_["files"] = files; }
     void labels(const std::map<std::string, std::string>& labels) { out_["labels"] = labels; }

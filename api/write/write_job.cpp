@@ -48,6 +48,14 @@ void WriteFields::material_of(const std::optional<std::uint32_t>& material)
     if (material) out_["material"] = scene_.materials.at(*material).name;
 }
 
+void WriteFields::metal_of(const std::variant<renderer::Metal, renderer::ComplexIor>& ior)
+{
+    if (const auto* metal = std::get_if<renderer::Metal>(&ior)) return word("metal", *metal, nullptr);
+    const auto& given = std::get<renderer::ComplexIor>(ior);
+    color("eta", given.eta, kIor, nullptr);
+    color("k", given.k, kExtinction, nullptr);
+}
+
 void WriteFields::placement(const renderer::Affine3& world_from_object)
 {
     Json matrix = Json::array();

@@ -1,10 +1,12 @@
 // Material: what a surface is made of, as a user wrote it.
 //
-// Units  colours are shares of light, linear Rec. 709; radiance W/(m^2 sr); absorption 1/m. Roughness is what a user
-//        sees as even steps: the microfacets' alpha is its square. Below kSmoothBelow a surface is a mirror.
+// Units  colours are shares of light, linear Rec. 709; radiance W/(m^2 sr); absorption 1/m. Roughness is
+//        what a user sees as even steps: the microfacets' alpha is its square. Below kSmoothBelow a surface
+//        is a mirror.
 #pragma once
 
 #include "renderer/color/rgb.h"
+#include "renderer/description/metals.h"
 #include "renderer/description/texture.h"
 
 #include <cstdint>
@@ -59,10 +61,33 @@ struct GlassMaterial {
     friend bool operator==(const GlassMaterial&, const GlassMaterial&) = default;
 };
 
-// Complex index of refraction eta + i k, against vacuum.
+// Whether light that meets several facets is modelled.
+enum class Multiscatter : std::uint8_t { automatic, on, off };
+
+// Up to this roughness less than 0.6 % of the light meets more than one facet.
+inline constexpr double kMultiscatterAbove = 0.2;
+
+inline bool compensates(Multiscatter multiscatter, const TexturedNumber& roughness)
+{
+    if (multiscatter != Multiscatter::automatic) return multiscatter == Multiscatter::on;
+    return roughness.texture || roughness.value > kMultiscatterAbove;
+}
+
+// A varnished base, or metal in the share `metallic`.
+struct CookTorranceMaterial {
+    TexturedColor base_color{{0.5f, 0.5f, 0.5f}};
+    TexturedNumber metallic{0};
+    TexturedNumber roughness{0.5};
+    double ior = 1.5; // of the varnish
+    Multiscatter multiscatter = Multiscatter::automatic;
+    SurfaceOptions surface{};
+    friend bool operator==(const CookTorranceMaterial&, const CookTorranceMaterial&) = default;
+};
+
 struct ConductorMaterial {
-    Rgb eta{0.2f, 0.2f, 0.2f}, k{3, 3, 3};
+    std::variant<Metal, ComplexIor> ior{Metal::aluminium};
     TexturedNumber roughness{0};
+    Multiscatter multiscatter = Multiscatter::automatic;
     SurfaceOptions surface{};
     friend bool operator==(const ConductorMaterial&, const ConductorMaterial&) = default;
 };
@@ -74,8 +99,15 @@ struct EmitterMaterial {
     friend bool operator==(const EmitterMaterial&, const EmitterMaterial&) = default;
 };
 
+inline ComplexIor complex_ior(const std::variant<Metal, ComplexIor>& ior)
+{
+    const auto* const metal = std::get_if<Metal>(&ior);
+    return metal != nullptr ? complex_ior(*metal) : std::get<ComplexIor>(ior);
+}
+
 using Material = std::variant<DiffuseMaterial,
                               PhongMaterial,
+                              CookTorranceMaterial,
                               MirrorMaterial,
                               GlassMaterial,
                               ConductorMaterial,

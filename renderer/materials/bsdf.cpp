@@ -1,6 +1,8 @@
 #include "renderer/materials/bsdf.h"
 
 #include "renderer/materials/conductor.h"
+#include "renderer/materials/cook_torrance.h"
+#include "renderer/materials/facet_reflection.h"
 #include "renderer/materials/glass.h"
 #include "renderer/materials/phong.h"
 #include "renderer/math/transcendental.h"
@@ -25,6 +27,11 @@ Bsdf make(const DiffuseMaterial& m)
 Bsdf make(const PhongMaterial& m)
 {
     return make_phong(m);
+}
+
+Bsdf make(const CookTorranceMaterial& m)
+{
+    return make_cook_torrance(m);
 }
 
 Bsdf make(const MirrorMaterial& m)
@@ -84,8 +91,11 @@ bool is_delta_only(const Bsdf& bsdf)
     case BsdfKind::diffuse:
     case BsdfKind::phong_classic:
     case BsdfKind::phong_normalized:
+    case BsdfKind::cook_torrance:
     case BsdfKind::rough_conductor:
         return false;
+    case BsdfKind::smooth_cook_torrance:
+        return !has_layers(bsdf.layers);
     case BsdfKind::rough_glass:
         return passes_straight(bsdf);
     case BsdfKind::mirror:
@@ -112,6 +122,10 @@ Rgb eval(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
         return wi.z > 0 ? eval_phong(bsdf, wo, wi) : Rgb{};
     case BsdfKind::rough_glass:
         return evaluate_glass(bsdf, wo, wi).f;
+    case BsdfKind::cook_torrance:
+        return evaluate_cook_torrance(bsdf, wo, wi).f;
+    case BsdfKind::smooth_cook_torrance:
+        return evaluate_smooth_cook_torrance(bsdf, wo, wi).f;
     case BsdfKind::rough_conductor:
         return evaluate_conductor(bsdf, wo, wi).f;
     case BsdfKind::mirror:
@@ -138,6 +152,10 @@ BsdfValue evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
         return {eval(bsdf, wo, wi), pdf_phong(bsdf, wo, wi)};
     case BsdfKind::rough_glass:
         return evaluate_glass(bsdf, wo, wi);
+    case BsdfKind::cook_torrance:
+        return evaluate_cook_torrance(bsdf, wo, wi);
+    case BsdfKind::smooth_cook_torrance:
+        return evaluate_smooth_cook_torrance(bsdf, wo, wi);
     case BsdfKind::rough_conductor:
         return evaluate_conductor(bsdf, wo, wi);
     case BsdfKind::mirror:
@@ -169,8 +187,11 @@ BsdfSample sample(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u)
     case BsdfKind::rough_glass:
         if (passes_straight(bsdf)) return sample_smooth_glass(bsdf, wo, u_lobe);
         return weighed(bsdf, wo, sample_rough_glass(bsdf, wo, u_lobe, u));
+    case BsdfKind::smooth_cook_torrance:
+        return sample_smooth_cook_torrance(bsdf, wo, u_lobe, u);
+    case BsdfKind::cook_torrance:
     case BsdfKind::rough_conductor:
-        return weighed(bsdf, wo, sample_conductor(bsdf, wo, u));
+        return weighed(bsdf, wo, sample_facets(bsdf, wo, u_lobe, u));
     case BsdfKind::black:
         return {};
     }
@@ -180,6 +201,13 @@ BsdfSample sample(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u)
 DeltaLobes delta_lobes(const Bsdf& bsdf, Vec3f wo)
 {
     switch (bsdf.kind) {
+    case BsdfKind::smooth_cook_torrance: {
+        DeltaLobes out;
+        if (wo.z > 0)
+            out.lobes[out.count++] = {
+                {-wo.x, -wo.y, wo.z}, varnish_reflectance(bsdf, static_cast<double>(wo.z)), false};
+        return out;
+    }
     case BsdfKind::mirror:
     case BsdfKind::conductor: {
         DeltaLobes out;
@@ -193,6 +221,7 @@ DeltaLobes delta_lobes(const Bsdf& bsdf, Vec3f wo)
     case BsdfKind::diffuse:
     case BsdfKind::phong_classic:
     case BsdfKind::phong_normalized:
+    case BsdfKind::cook_torrance:
     case BsdfKind::rough_conductor:
     case BsdfKind::black:
         return {};
@@ -214,8 +243,12 @@ Rgb albedo(const Bsdf& bsdf, Vec3f wo)
     case BsdfKind::rough_glass:
         return {1, 1, 1}; // what is not reflected passes
     case BsdfKind::conductor:
+        return mirror_reflectance(bsdf, wo);
+    case BsdfKind::cook_torrance:
+    case BsdfKind::smooth_cook_torrance:
     case BsdfKind::rough_conductor:
-        return albedo_conductor(bsdf, wo);
+        return layer_albedo(bsdf.layers, static_cast<double>(wo.z), static_cast<double>(bsdf.roughness))
+            .sum();
     case BsdfKind::black:
         return {};
     }

@@ -1,16 +1,19 @@
 // Bsdf: how a surface scatters light: a closed set, as eval / sample / pdf.
 //
-// Frame   local: z is the shading normal, on the viewer's side; wo and wi are unit and point away from the surface. wi.z < 0
-//         is light from the other side, which only glass lets through.
-// Units   eval is f(wo, wi) |cos(wi)| in 1/sr; pdfs per steradian. Radiance is what is carried: transmission has
-//         its factor 1 / eta^2 (E. Veach, thesis, 1997, 5.2). Directions that a surface reflects or refracts without scattering
-//         (delta lobes) have no eval and no pdf; sample and delta_lobes give them.
-// Source  diffuse: Lambert. phong.h, microfacet.h, conductor.h, glass.h name theirs.
+// Frame   local: z is the shading normal, on the viewer's side; wo and wi are unit and point away from the
+//         surface. wi.z < 0 is light from the other side, which only glass lets through.
+// Units   eval is f(wo, wi) |cos(wi)| in 1/sr; pdfs per steradian. Radiance is what is carried:
+//         transmission has its factor 1 / eta^2 (E. Veach, thesis, 1997, 5.2). Directions that a surface
+//         reflects or refracts without scattering (delta lobes) have no eval and no pdf; sample and
+//         delta_lobes give them.
+// Source  diffuse: Lambert. phong.h, microfacet.h, layers.h, cook_torrance.h, conductor.h, glass.h name
+//         theirs.
 // Cost    a switch, no virtual call, no allocation.
 #pragma once
 
 #include "renderer/color/rgb.h"
 #include "renderer/description/material.h"
+#include "renderer/materials/layers.h"
 #include "renderer/math/vec3.h"
 #include "renderer/sampling/sampler.h"
 
@@ -24,6 +27,8 @@ enum class BsdfKind : std::uint8_t {
     diffuse,
     phong_classic,
     phong_normalized,
+    cook_torrance,
+    smooth_cook_torrance,
     mirror,
     glass,
     rough_glass,
@@ -44,15 +49,16 @@ struct Bsdf {
     BsdfKind kind = BsdfKind::diffuse;
     bool two_sided = true; // else seen from behind it is black
     float lobe_share = 0;  // Phong: of the samples, drawn around the mirror direction
-    float alpha = 0;       // of the microfacets: width of their slopes
-    float eta =
-        1; // glass: index behind the surface over index on wo's side; make_bsdf's is seen from vacuum outside
+    float roughness = 0;   // its square is alpha, the width of the facets' slopes
+    float eta = 1; // glass: index behind over index on wo's side, at first as from vacuum; cook_torrance: ior
     Rgb diffuse{0.5f, 0.5f, 0.5f};
     Rgb specular{}; // Phong: k_s; mirror: its colour; conductor: eta
     Rgb k{};        // conductor
     Rgb ambient{};  // radiance added whatever the light
     Rgb emission{}; // radiance that an emitter sends out, from its front or both sides
     double shininess = 0;
+    float share_below_one = 0; // cook_torrance: the share that is a dielectric, if its ior is below 1
+    Layers layers{};           // cook_torrance, conductor
     GlassMedium medium{};
 };
 
@@ -83,7 +89,8 @@ BsdfValue evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi);
 // u_lobe chooses what to draw from, u where.
 BsdfSample sample(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u);
 
-// Every direction that is reflected or refracted without scattering, each with its whole share: for recursion that follows all.
+// Every direction that is reflected or refracted without scattering, each with its whole share: for
+// recursion that follows all.
 struct DeltaLobe {
     Vec3f wi{};
     Rgb weight{};
@@ -95,7 +102,8 @@ struct DeltaLobes {
 };
 DeltaLobes delta_lobes(const Bsdf& bsdf, Vec3f wo);
 
-// Share of the light from everywhere that goes to wo, both sides together; where no closed form is known an estimate.
+// Share of the light from everywhere that goes to wo, both sides together; where no closed form is known an
+// estimate.
 Rgb albedo(const Bsdf& bsdf, Vec3f wo);
 
 } // namespace renderer

@@ -1,9 +1,21 @@
 #include "renderer/materials/conductor.h"
 
+#include "renderer/materials/facet_albedo.h"
+#include "renderer/materials/facet_reflection.h"
 #include "renderer/materials/fresnel.h"
-#include "renderer/materials/microfacet.h"
 
 namespace renderer {
+
+namespace {
+
+// Of the light that meets several facets, by channel.
+float several_of(float eta, float k, double white_average)
+{
+    const double average = average_fresnel_conductor(static_cast<double>(eta), static_cast<double>(k));
+    return several_facets(average, white_average);
+}
+
+} // namespace
 
 Bsdf make_mirror(const MirrorMaterial& m)
 {
@@ -16,11 +28,20 @@ Bsdf make_mirror(const MirrorMaterial& m)
 Bsdf make_conductor(const ConductorMaterial& m)
 {
     Bsdf bsdf;
+    const ComplexIor ior = complex_ior(m.ior);
     const double roughness = m.roughness.value;
     bsdf.kind = roughness < kSmoothBelow ? BsdfKind::conductor : BsdfKind::rough_conductor;
-    bsdf.alpha = static_cast<float>(roughness * roughness);
-    bsdf.specular = m.eta;
-    bsdf.k = m.k;
+    bsdf.roughness = static_cast<float>(roughness);
+    bsdf.specular = ior.eta;
+    bsdf.k = ior.k;
+    bsdf.layers.f0 = fresnel_conductor(1, ior.eta, ior.k);
+    if (bsdf.kind == BsdfKind::rough_conductor && compensates(m.multiscatter, m.roughness)) {
+        const double white = average_facet_albedo(roughness).white;
+        bsdf.layers.several = {several_of(ior.eta.r, ior.k.r, white),
+                               several_of(ior.eta.g, ior.k.g, white),
+                               several_of(ior.eta.b, ior.k.b, white)};
+        bsdf.layers.one_over_missing = static_cast<float>(1 / (kPi * (1 - white)));
+    }
     return bsdf;
 }
 
@@ -32,27 +53,8 @@ Rgb mirror_reflectance(const Bsdf& bsdf, Vec3f wo)
 
 BsdfValue evaluate_conductor(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
 {
-    if (!(wo.z > 0) || !(wi.z > 0)) return {};
-    const Vec3d o = unit_double(wo), i = unit_double(wi), h = o + i;
-    const Microfacets facets(static_cast<double>(bsdf.alpha));
-    const double density = facets.distribution(h);
-    const Rgb reflected = fresnel_conductor(0.5 * length(h), bsdf.specular, bsdf.k);
-    const double seen = 0.5 / (o.z + facets.slope_length(o.z)); // G1 / (4 cos_o)
-    return {reflected * static_cast<float>(density * facets.visibility(o.z, i.z) * i.z),
-            static_cast<float>(density * seen)};
-}
-
-Vec3f sample_conductor(const Bsdf& bsdf, Vec3f wo, Sample2 u)
-{
-    if (!(wo.z > 0)) return {};
-    const Vec3d o = unit_double(wo);
-    const Vec3d h = sample_visible_facet(static_cast<double>(bsdf.alpha), o, u);
-    return to_float(h * (2 * dot(o, h)) - o);
-}
-
-Rgb albedo_conductor(const Bsdf& bsdf, Vec3f wo)
-{
-    return fresnel_conductor(static_cast<double>(wo.z), bsdf.specular, bsdf.k);
+    return evaluate_facets(
+        bsdf, wo, wi, [&](double cosine) { return fresnel_conductor(cosine, bsdf.specular, bsdf.k); });
 }
 
 } // namespace renderer

@@ -35,7 +35,8 @@ double fresnel_conductor(double cos_incident, double eta, double k)
     const double a2_b2 = std::sqrt(real * real + imaginary * imaginary);
     const double a = std::sqrt(std::max(0.0, 0.5 * (a2_b2 + real)));
     const double twice = 2 * a * c;
-    const double perpendicular = (a2_b2 + c2 - twice) / (a2_b2 + c2 + twice);
+    const double both = a2_b2 + c2;
+    const double perpendicular = both + twice > 0 ? (both - twice) / (both + twice) : 1;
     const double sum = c2 * a2_b2 + s2 * s2, turn = twice * s2;
     // At grazing incidence both vanish together: the quotient is 1.
     const double ratio = sum + turn > 0 ? (sum - turn) / (sum + turn) : 1;
@@ -65,7 +66,8 @@ double schlick_weight(double cos_incident)
 
 double average_fresnel_dielectric(double eta)
 {
-    // From within, by reciprocity: what gets out is what gets in, over the solid angle that it is spread to.
+    // From within, by reciprocity: what gets out is what gets in, over the solid angle that it is spread
+    // to.
     if (eta < 1) return 1 - (1 - average_fresnel_dielectric(1 / eta)) * eta * eta;
     // The closed form subtracts poles at eta = 1; there a straight line is right to 3e-6.
     if (eta < 1.002) return (eta - 1) * (average_fresnel_dielectric(1.002) / 0.002);

@@ -9,10 +9,16 @@ namespace renderer {
 
 namespace {
 
-// So near to 1 facets refract by less than a float's step, and reflect less than 1e-10 but at grazing angles.
+// So near to 1 facets refract by less than a float's step, and reflect less than 1e-10 but at grazing
+// angles.
 constexpr float kNoBoundary = 1e-5f;
 
 constexpr Rgb kWhite{1, 1, 1};
+
+double alpha_of(const Bsdf& bsdf)
+{
+    return static_cast<double>(bsdf.roughness) * static_cast<double>(bsdf.roughness);
+}
 
 Rgb transmitted_radiance(float eta)
 {
@@ -22,6 +28,15 @@ Rgb transmitted_radiance(float eta)
 Vec3f mirrored(Vec3f w)
 {
     return {-w.x, -w.y, w.z};
+}
+
+// What wo meets: its cosine from the sine where that is small, since a float's cosine near 1 says little of
+// the angle.
+DielectricBoundary meet(Vec3f wo, double eta)
+{
+    const Vec3d o = unit_double(wo);
+    const double sine2 = o.x * o.x + o.y * o.y;
+    return meet_dielectric(sine2 < 0.5 ? std::sqrt(1 - sine2) : o.z, eta);
 }
 
 // The way on through a flat boundary.
@@ -65,7 +80,7 @@ Bsdf make_glass(const GlassMaterial& m)
     Bsdf bsdf;
     const double roughness = m.roughness.value;
     bsdf.kind = roughness < kSmoothBelow ? BsdfKind::glass : BsdfKind::rough_glass;
-    bsdf.alpha = static_cast<float>(roughness * roughness);
+    bsdf.roughness = static_cast<float>(roughness);
     bsdf.medium = {static_cast<float>(m.ior), m.priority, m.absorption};
     bsdf.eta = bsdf.medium.ior;
     return bsdf;
@@ -79,7 +94,7 @@ bool passes_straight(const Bsdf& bsdf)
 BsdfValue evaluate_glass(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
 {
     if (!(wo.z > 0) || wi.z == 0 || passes_straight(bsdf)) return {};
-    const Microfacets facets(static_cast<double>(bsdf.alpha));
+    const Microfacets facets(alpha_of(bsdf));
     const auto eta = static_cast<double>(bsdf.eta);
     return wi.z > 0 ? evaluate_reflection(facets, eta, unit_double(wo), unit_double(wi))
                     : evaluate_transmission(facets, eta, unit_double(wo), unit_double(wi));
@@ -107,7 +122,7 @@ DeltaLobes delta_lobes_of_glass(const Bsdf& bsdf, Vec3f wo)
     }
     if (bsdf.kind == BsdfKind::rough_glass || !(wo.z > 0)) return out;
     const auto eta = static_cast<double>(bsdf.eta);
-    const DielectricBoundary met = meet_dielectric(static_cast<double>(wo.z), eta);
+    const DielectricBoundary met = meet(wo, eta);
     const auto reflected = static_cast<float>(met.reflected);
     if (reflected > 0) out.lobes[out.count++] = {mirrored(wo), kWhite * reflected, false};
     if (reflected < 1)
@@ -120,7 +135,7 @@ Vec3f sample_rough_glass(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u)
 {
     if (!(wo.z > 0)) return {};
     const Vec3d o = unit_double(wo);
-    const Vec3d h = sample_visible_facet(static_cast<double>(bsdf.alpha), o, u);
+    const Vec3d h = sample_visible_facet(alpha_of(bsdf), o, u);
     const auto eta = static_cast<double>(bsdf.eta);
     const double o_h = dot(o, h);
     const DielectricBoundary met = meet_dielectric(o_h, eta);

@@ -1,8 +1,10 @@
 // Glass: a boundary that reflects and refracts, smooth or rough, seen from either side.
 //
-// Units   eta of the Bsdf: index behind over index on wo's side. At eta 1 there is no boundary: light goes on to the bit.
-// Source  smooth: the exact Fresnel term and Snell's law in vector form. Rough: B. Walter et al., "Microfacet Models for
-//         Refraction through Rough Surfaces", EGSR 2007, with height-correlated masking across the boundary.
+// Units   eta of the Bsdf: index behind over index on wo's side. At eta 1 there is no boundary: light goes
+//         on to the bit.
+// Source  smooth: the exact Fresnel term and Snell's law in vector form. Rough: B. Walter et al.,
+//         "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, with height-correlated
+//         masking across the boundary.
 #pragma once
 
 #include "renderer/materials/bsdf.h"

@@ -38,7 +38,8 @@ double Microfacets::visible_density(Vec3d h, double cos_o) const
 
 Vec3d sample_visible_facet(double alpha, Vec3d wo, Sample2 u)
 {
-    // Seen along wo, facets of a hemisphere fill a disk evenly; the slopes' width stretches the one to the other.
+    // Seen along wo, facets of a hemisphere fill a disk evenly; the slopes' width stretches the one to the
+    // other.
     const Vec3d stretched = normalize(Vec3d{alpha * wo.x, alpha * wo.y, wo.z});
     const auto [sin_phi, cos_phi] = sin_cos(2 * kPi * static_cast<double>(u.u0));
     const double z = (1 - static_cast<double>(u.u1)) * (1 + stretched.z) - stretched.z;

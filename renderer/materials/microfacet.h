@@ -1,12 +1,14 @@
-// Microfacets: a rough surface as mirrors or panes whose slopes are spread as Trowbridge and Reitz say (GGX), alike
-// in all directions.
+// Microfacets: a rough surface as mirrors or panes whose slopes are spread as Trowbridge and Reitz say
+// (GGX), alike in all directions.
 //
-// Frame    local, z up; directions in double, unit: a sharp lobe is narrower than a float's step would forgive.
-// Units    densities per steradian. alpha: width of the slopes, roughness squared, above 0.
-// Source   B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007 (D, Jacobians); E. Heitz,
-//          "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014 (height-correlated Smith); J. Dupuy, A. Benyoub,
-//          "Sampling Visible GGX Normals with Spherical Caps", 2023.
-// Numerics sums of squares instead of 1 - cos^2, so that alpha 1e-6 keeps its digits.
+// Frame   local, z up; directions in double, unit: a sharp lobe is narrower than a float's step would
+//         forgive.
+// Units   densities per steradian. alpha: width of the slopes, roughness squared, above 0.
+// Source  B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007 (D,
+//         Jacobians); E. Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014
+//         (height-correlated Smith); J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical
+//         Caps", 2023.
+// Digits  sums of squares instead of 1 - cos^2, so that alpha 1e-6 keeps them.
 #pragma once
 
 #include "renderer/math/vec3.h"

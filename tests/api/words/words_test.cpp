@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
 #include <cstddef>
 #include <set>
 #include <string>
@@ -69,6 +68,8 @@ TEST(WordTables, HaveAWordForEachAlternative)
     expect_a_word_for_each<renderer::Light>(std::variant_size_v<renderer::Light>, 0);
     expect_a_word_for_each<renderer::Environment>(std::variant_size_v<renderer::Environment>, 0);
     expect_a_word_for_each<renderer::PhongForm>(2, 0);
+    expect_a_word_for_each<renderer::Multiscatter>(3, 0);
+    expect_a_word_for_each<renderer::Metal>(10, 0);
     expect_a_word_for_each<renderer::Shading>(3, 0);
     expect_a_word_for_each<renderer::TransportType>(6, 0);
     expect_a_word_for_each<renderer::Projection>(4, 0);

@@ -80,7 +80,28 @@ private:
 
     renderer::Material material()
     {
-        if (coin()) return renderer::DiffuseMaterial{color(1)};
+        switch (random_() % 5) {
+        case 0:
+            return renderer::DiffuseMaterial{{color(1)}};
+        case 1: {
+            renderer::CookTorranceMaterial m;
+            m.base_color.value = color(1);
+            m.metallic.value = unit();
+            m.roughness.value = unit();
+            m.ior = 1e-3 + unit() * 900;
+            m.multiscatter = static_cast<renderer::Multiscatter>(whole(0, 2));
+            return m;
+        }
+        case 2: {
+            renderer::ConductorMaterial m;
+            m.ior = static_cast<renderer::Metal>(whole(0, 9));
+            if (coin()) m.ior = renderer::ComplexIor{{1, 0.5f, 2}, color(1000)};
+            m.roughness.value = unit();
+            return m;
+        }
+        default:
+            break;
+        }
         return renderer::PhongMaterial{{color(1)},
                                        {color(1)},
                                        unit() * 1000,

@@ -100,10 +100,12 @@ TEST(Bsdf, GivesDeltaLobesThatAddUpToWhatIsDrawn)
                     }
                 ASSERT_TRUE(found) << name << " at " << angle;
             }
-            for (std::size_t k = 0; k < all.count; ++k)
-                EXPECT_NEAR(
-                    drawn[k].r / all.lobes[k].weight.r, 1, 1e-3 / std::min(1e-1f, all.lobes[k].weight.r))
+            for (std::size_t k = 0; k < all.count; ++k) {
+                const float radiance = all.lobes[k].is_transmission ? 1 / (bsdf.eta * bsdf.eta) : 1;
+                const double share = static_cast<double>(all.lobes[k].weight.r / radiance);
+                EXPECT_NEAR(static_cast<double>(drawn[k].r / radiance), share, 1e-3)
                     << name << " at " << angle << ", lobe " << k;
+            }
         }
 }
 
@@ -152,6 +154,28 @@ TEST(PhongNormalized, NeverReflectsMoreThanItGets)
             EXPECT_LE(specular, 1 + 1e-4) << n << " at " << angle;
             if (angle == 0) {
                 EXPECT_NEAR(specular, 1, 1e-4) << n; // full at normal incidence
+            }
+        }
+}
+
+TEST(PhongNormalized, ReflectsAllThatItsHighlightGetsAtNormalIncidenceAndNoMoreElsewhere)
+{
+    // By a midpoint rule over the lobe's own samples.
+    constexpr int kRings = 16384, kSectors = 8;
+    for (const double n : {0.0, 1.0, 1e6})
+        for (const double angle : {0.0, 45.0, 85.0}) {
+            const Bsdf bsdf = phong(n, PhongForm::normalized, 0, 1);
+            double sum = 0;
+            for (int i = 0; i < kRings; ++i)
+                for (int j = 0; j < kSectors; ++j) {
+                    const renderer::Sample2 u{(static_cast<float>(i) + 0.5f) / kRings,
+                                              (static_cast<float>(j) + 0.5f) / kSectors};
+                    sum += static_cast<double>(sample(bsdf, at_angle(angle), 0, u).weight.r);
+                }
+            const double energy = sum / kRings / kSectors;
+            EXPECT_LE(energy, 1 + 1e-6) << n << " at " << angle;
+            if (angle == 0) {
+                EXPECT_NEAR(energy, 1, 1e-6) << n;
             }
         }
 }

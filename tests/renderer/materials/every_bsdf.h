@@ -48,9 +48,26 @@ inline renderer::Bsdf glass_from_within(double ior, double roughness)
 inline renderer::Bsdf conductor(float eta, float k, double roughness)
 {
     renderer::ConductorMaterial m;
-    m.eta = {eta, eta, eta};
-    m.k = {k, k, k};
+    m.ior = renderer::ComplexIor{{eta, eta, eta}, {k, k, k}};
     m.roughness.value = roughness;
+    return make_bsdf(m);
+}
+
+inline renderer::CookTorranceMaterial varnish(float base, double metallic, double roughness, double ior = 1.5)
+{
+    renderer::CookTorranceMaterial m;
+    m.base_color.value = {base, base, base};
+    m.metallic.value = metallic;
+    m.roughness.value = roughness;
+    m.ior = ior;
+    return m;
+}
+
+// Facets that reflect all they get.
+inline renderer::Bsdf white_facets(double roughness, renderer::Multiscatter multiscatter)
+{
+    renderer::CookTorranceMaterial m = varnish(1, 1, roughness);
+    m.multiscatter = multiscatter;
     return make_bsdf(m);
 }
 
@@ -69,11 +86,16 @@ inline std::vector<NamedBsdf> phong_bsdfs()
     return all;
 }
 
-// Of facets, by roughness.
+// Of facets, by roughness; some with a base that stays where they are smooth.
 inline std::vector<NamedBsdf> rough_bsdfs(double roughness)
 {
     const std::string of = " of roughness " + std::to_string(roughness);
     return {{"conductor" + of, conductor(0.2f, 3.9f, roughness)},
+            {"varnish" + of, make_bsdf(varnish(0.8f, 0, roughness))},
+            {"half metal" + of, make_bsdf(varnish(0.5f, 0.5, roughness))},
+            {"metal" + of, make_bsdf(varnish(0.9f, 1, roughness))},
+            {"thin varnish" + of, make_bsdf(varnish(0.8f, 0.2, roughness, 0.7))},
+            {"black varnish" + of, make_bsdf(varnish(0, 0, roughness, 1.5))},
             {"glass" + of, glass(1.5, roughness)},
             {"glass from within" + of, glass_from_within(1.5, roughness)},
             {"dense glass" + of, glass(1e3, roughness)},
@@ -83,7 +105,9 @@ inline std::vector<NamedBsdf> rough_bsdfs(double roughness)
 
 inline std::vector<NamedBsdf> delta_bsdfs()
 {
-    std::vector<NamedBsdf> all = rough_bsdfs(0);
+    std::vector<NamedBsdf> all;
+    for (const NamedBsdf& named : rough_bsdfs(0))
+        if (is_delta_only(named.bsdf)) all.push_back(named);
     all.push_back({"mirror", make_bsdf(renderer::MirrorMaterial{{{0.8f, 0.8f, 0.8f}}})});
     all.push_back({"no glass", glass(1, 0)});
     all.push_back({"no rough glass", glass(1, 0.5)});
@@ -98,7 +122,7 @@ inline std::vector<NamedBsdf> every_bsdf()
         all.insert(all.end(), more.begin(), more.end());
     };
     add(phong_bsdfs());
-    for (const double roughness : {1e-3, 0.03, 0.1, 0.5, 1.0})
+    for (const double roughness : {0.0, 1e-3, 0.03, 0.1, 0.5, 1.0})
         add(rough_bsdfs(roughness));
     add(delta_bsdfs());
     return all;

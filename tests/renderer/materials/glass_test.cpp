@@ -1,4 +1,5 @@
 #include "renderer/materials/fresnel.h"
+#include "renderer/sampling/warp.h"
 #include "tests/renderer/materials/every_bsdf.h"
 
 #include <gtest/gtest.h>
@@ -61,21 +62,59 @@ TEST(Glass, ReflectsAllFromWithinBeyondTheCriticalAngle)
 
 TEST(Glass, OfAThinSlabReflectsAndPassesWhatTheSeriesSays)
 {
-    // Every way through two boundaries at normal incidence, followed to its end by the lobes' own weights.
-    const Bsdf outside = glass(1.5, 0), inside = glass_from_within(1.5, 0);
-    const renderer::DeltaLobes in = delta_lobes(outside, {0, 0, 1}), out = delta_lobes(inside, {0, 0, 1});
-    ASSERT_EQ(in.count + out.count, 4u);
-    const auto share = [](const renderer::DeltaLobe& lobe) { return static_cast<double>(lobe.weight.r); };
-    const double r = share(in.lobes[0]);
-    double reflected = r, passed = 0, within = share(in.lobes[1]);
+    // Every way through two boundaries at normal incidence, followed to its end.
+    const double r = renderer::fresnel_dielectric(1, 1.5), back = renderer::fresnel_dielectric(1, 1 / 1.5);
+    double reflected = r, passed = 0, within = 1 - r;
     for (int k = 0; k < 40; ++k) {
-        const double partial = r + (1 - r) * (1 - r) * r * (1 - std::pow(r, 2 * k)) / (1 - r * r);
-        EXPECT_NEAR(reflected, partial, 1e-7) << k; // the lobes are floats
-        passed += within * share(out.lobes[1]);
-        within *= share(out.lobes[0]);
-        reflected += within * share(out.lobes[1]);
-        within *= share(out.lobes[0]);
+        EXPECT_NEAR(reflected, r + (1 - r) * (1 - r) * r * (1 - std::pow(r, 2 * k)) / (1 - r * r), 1e-12)
+            << k;
+        passed += within * (1 - back);
+        within *= back;
+        reflected += within * (1 - back);
+        within *= back;
     }
-    EXPECT_NEAR(reflected, 0.07692308, 1e-7);
-    EXPECT_NEAR(passed, 0.92307692, 1e-7);
+    EXPECT_NEAR(reflected, 2 * r / (1 + r), 1e-12);
+    EXPECT_NEAR(reflected, 0.07692308, 1e-8);
+    EXPECT_NEAR(passed, 0.92307692, 1e-8);
+    // The lobes carry these very shares, in floats; the factors of radiance cancel over both boundaries.
+    const renderer::DeltaLobes in = delta_lobes(glass(1.5, 0), {0, 0, 1});
+    const renderer::DeltaLobes out = delta_lobes(glass_from_within(1.5, 0), {0, 0, 1});
+    ASSERT_EQ(in.count + out.count, 4u);
+    EXPECT_NEAR(in.lobes[0].weight.r, r, 1e-8);
+    EXPECT_NEAR(out.lobes[0].weight.r, r, 1e-7);
+    EXPECT_NEAR(in.lobes[1].weight.r * out.lobes[1].weight.r, (1 - r) * (1 - r), 3e-7);
+}
+
+TEST(Glass, PlateShiftsARayWithoutTurningIt)
+{
+    for (const double n : {1.1, 1.5, 2.4})
+        for (const double angle : {5.0, 30.0, 60.0, 85.0}) {
+            const Vec3f wo = at_angle(angle, 0);
+            const Vec3f within = delta_lobes(glass(n, 0), wo).lobes[1].wi;
+            const renderer::DeltaLobes out = delta_lobes(glass_from_within(n, 0), -within);
+            EXPECT_NEAR(length(out.lobes[1].wi + wo), 0, 3e-6) << n << " " << angle; // of floats
+            // Of thickness 1, by the exact Fresnel boundary: in double.
+            const double theta = angle * renderer::kPi / 180, sine = std::sin(theta);
+            const double cos_t = renderer::meet_dielectric(std::cos(theta), n).cos_transmitted;
+            const double shift = std::sin(theta - std::asin(sine / n)) / cos_t;
+            EXPECT_NEAR(shift, sine * (1 - std::cos(theta) / std::sqrt(n * n - sine * sine)), 1e-12);
+        }
+}
+
+TEST(Glass, BallGathersParallelLightInItsFocus)
+{
+    // Diameter 2, height 0.01: n D / (4 (n - 1)) from the centre.
+    constexpr double kIor = 1.5, kHeight = 0.01;
+    const renderer::Vec3d in_normal{-std::sqrt(1 - kHeight * kHeight), kHeight, 0};
+    renderer::Vec3d place = in_normal, way{1, 0, 0};
+    const auto bend = [&](renderer::Vec3d normal, const Bsdf& bsdf) {
+        const renderer::Frame frame(renderer::to_float(normal));
+        const Vec3f wo = frame.to_local(renderer::to_float(-way));
+        way = renderer::to_double(frame.to_world(delta_lobes(bsdf, wo).lobes[1].wi));
+    };
+    bend(in_normal, glass(kIor, 0));
+    place = place + way * (-2 * dot(place, way)); // the chord
+    bend(-place, glass_from_within(kIor, 0));
+    const double focus = place.x - place.y * way.x / way.y;
+    EXPECT_NEAR(focus, 1.5, 1e-4);
 }
