@@ -1,6 +1,7 @@
 #include "api/words/word_table.h"
 
 #include "renderer/description/mesh_formats.h"
+#include "renderer/description/picture_formats.h"
 
 #include <array>
 #include <cassert>
@@ -127,8 +128,9 @@ WordTable words_for<TransportType>()
 template <>
 WordTable words_for<Tone>()
 {
-    static constexpr std::array words{
-        enumerator("srgb", Tone::srgb), enumerator("linear", Tone::linear), Word{"filmic"}};
+    static constexpr std::array words{enumerator("srgb", Tone::srgb),
+                                      enumerator("linear", Tone::linear),
+                                      enumerator("filmic", Tone::filmic)};
     return words;
 }
 
@@ -194,8 +196,12 @@ WordTable mesh_format_words()
 
 WordTable image_format_words()
 {
-    static constexpr std::array words{
-        Word{"image/png", 0}, Word{"image/jpeg"}, Word{"image/vnd.radiance"}, Word{"image/x-exr"}};
+    static constexpr auto words = [] {
+        std::array<Word, renderer::kPictureFormats.size()> all{};
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i] = Word{renderer::kPictureFormats[i].media_type, static_cast<int>(i)};
+        return all;
+    }();
     return words;
 }
 

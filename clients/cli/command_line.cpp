@@ -8,6 +8,7 @@
 #include "clients/cli/sky_options.h"
 #include "clients/cli/user_error.h"
 #include "renderer/description/mesh_formats.h"
+#include "renderer/description/picture_formats.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -74,6 +75,18 @@ void add_quiet(CLI::App& command, bool& quiet)
     command.add_flag("-q,--quiet", quiet, "no progress bar and no notes")->envname("HELIOGRAPH_QUIET");
 }
 
+std::string output_help()
+{
+    return "picture; its extension tells the format: " + renderer::picture_extensions() +
+           " (.hdr, .exr and .pfm hold radiance); - writes a PNG to standard output";
+}
+
+void add_bits(CLI::App& command, std::optional<std::uint32_t>& bits)
+{
+    command.add_option("--bits", bits, "bits a channel of a PNG: 8 or 16 (default: 8)")
+        ->check(CLI::IsMember({8u, 16u}));
+}
+
 void add_service_options(CLI::App& command, ServiceOptions& service)
 {
     command.add_option("--url", service.url, "the service")->envname("HELIOGRAPH_URL")->capture_default_str();
@@ -94,11 +107,8 @@ void add_render(CommandLine& words)
             return render_command(words.render, stop);
         });
     command->add_option("scene", options.scene, scene_help())->required();
-    command
-        ->add_option("-o,--output",
-                     options.output,
-                     "picture: .png, or .pfm (linear); - writes a PNG to standard output")
-        ->required();
+    command->add_option("-o,--output", options.output, output_help())->required();
+    add_bits(*command, options.bits);
     command->add_option("--report", options.report, "write the report (JSON) to this file");
     auto* samples =
         command->add_option("--samples", options.samples, "samples a pixel, instead of the scene's quality")
@@ -161,8 +171,8 @@ void add_compare(CommandLine& words)
                                     "compare",
                                     "how far a picture is from a reference, on linear values",
                                     [&words](const auto&) { return compare_command(words.compare); });
-    command->add_option("picture", words.compare.picture, "PNG, PFM or HDR")->required();
-    command->add_option("reference", words.compare.reference, "PNG, PFM or HDR")->required();
+    command->add_option("picture", words.compare.picture, "PNG, JPEG, HDR, EXR or PFM")->required();
+    command->add_option("reference", words.compare.reference, "PNG, JPEG, HDR, EXR or PFM")->required();
     command->add_flag("--json", words.compare.json, "one JSON object");
 }
 
@@ -199,7 +209,8 @@ void add_making(CommandLine& words)
         return fetch_command(words.service, words.fetch, stop);
     });
     fetch->add_option("id", words.fetch.id, "job")->required();
-    fetch->add_option("-o,--output", words.fetch.output, "picture; - for standard output")->required();
+    fetch->add_option("-o,--output", words.fetch.output, output_help())->required();
+    add_bits(*fetch, words.fetch.bits);
     add_service_options(*fetch, words.service);
 
     CLI::App* run = add_command(
@@ -207,7 +218,8 @@ void add_making(CommandLine& words)
             return run_command(words.service, words.run, stop);
         });
     add_scene_options(*run, words.run.submit);
-    run->add_option("-o,--output", words.run.output, "picture; - for standard output")->required();
+    run->add_option("-o,--output", words.run.output, output_help())->required();
+    add_bits(*run, words.run.bits);
     run->add_option("--timeout", words.run.timeout_s, "seconds (default: for ever)");
     add_service_options(*run, words.service);
 }

@@ -15,13 +15,14 @@ namespace clients {
 
 struct RenderOptions {
     std::string scene;  // file, mesh or "-"
-    std::string output; // .png or .pfm
+    std::string output; // its extension tells the format; "-": PNG
     std::string report; // file for the report; empty: none
     // What stands here goes before what the scene says.
     std::optional<std::uint32_t> width_px, height_px, samples, threads, tile_px;
     std::optional<std::uint64_t> seed;
     std::optional<double> time_s;
     std::optional<renderer::BvhSplit> split;
+    std::optional<std::uint32_t> bits; // a channel, of a PNG
     bool quiet = false;
 };
 ExitCode render_command(const RenderOptions& options, const std::stop_token& stop);

@@ -1,5 +1,6 @@
 #include "clients/cli/picture_file.h"
 
+#include "clients/cli/exr_file.h"
 #include "clients/cli/files.h"
 #include "clients/cli/user_error.h"
 #include "renderer/color/srgb.h"
@@ -9,6 +10,7 @@
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 32768
@@ -57,7 +59,7 @@ std::vector<float> srgb_table(std::size_t steps)
     return table;
 }
 
-renderer::LinearImage read_png_or_hdr(const std::string& bytes, const std::string& name)
+renderer::LinearImage read_png_jpeg_or_hdr(const std::string& bytes, const std::string& name)
 {
     if (bytes.size() > std::size_t{std::numeric_limits<int>::max()}) refuse(name, "larger than 2 GiB");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
@@ -85,7 +87,8 @@ renderer::LinearImage read_png_or_hdr(const std::string& bytes, const std::strin
     }
     const std::unique_ptr<stbi_uc, FreePixels> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, 3));
-    if (!pixels) refuse(name, std::string("not a PNG, PFM or HDR picture: ") + stbi_failure_reason());
+    if (!pixels)
+        refuse(name, std::string("not a PNG, JPEG, HDR, EXR or PFM picture: ") + stbi_failure_reason());
     return from_channels(pixels.get(), width, height, srgb_table(256));
 }
 
@@ -153,7 +156,8 @@ renderer::LinearImage read_picture(const std::filesystem::path& path)
 {
     const std::string bytes = read_file(path);
     if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return read_pfm(bytes, path.string());
-    return read_png_or_hdr(bytes, path.string());
+    if (is_exr(bytes)) return read_exr(bytes, path.string());
+    return read_png_jpeg_or_hdr(bytes, path.string());
 }
 
 } // namespace clients

@@ -1,5 +1,5 @@
-// Picture files as linear pictures: PNG (8 or 16 bits, taken as sRGB), PFM and Radiance HDR (taken as
-// linear).
+// Picture files as linear pictures: PNG (8 or 16 bits) and JPEG, taken as sRGB; PFM, Radiance HDR and OpenEXR,
+// taken as linear.
 //
 // Alpha is dropped, grey is spread over three channels.
 // Errors  UserError(usage) naming the file; a picture over 32768 pixels a side is refused.

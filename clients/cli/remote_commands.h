@@ -36,7 +36,8 @@ ExitCode wait_command(const ServiceOptions& service, const WaitOptions& options,
 
 struct FetchOptions {
     std::string id;
-    std::string output; // .png, or another format that the service can give
+    std::string output;                // its extension tells the format; "-": PNG
+    std::optional<std::uint32_t> bits; // a channel, of a PNG
 };
 ExitCode fetch_command(const ServiceOptions& service, const FetchOptions& options, std::stop_token stop);
 
@@ -44,6 +45,7 @@ ExitCode fetch_command(const ServiceOptions& service, const FetchOptions& option
 struct RunOptions {
     SubmitOptions submit;
     std::string output;
+    std::optional<std::uint32_t> bits;
     std::optional<double> timeout_s;
 };
 ExitCode run_command(const ServiceOptions& service, const RunOptions& options, const std::stop_token& stop);

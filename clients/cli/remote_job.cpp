@@ -81,24 +81,6 @@ HttpRequest look_at(const std::string& id, double wait_s, const std::string& eta
     return request;
 }
 
-std::string media_type_of(const std::string& output)
-{
-    struct Format {
-        std::string_view extension, type;
-    };
-    static constexpr std::array<Format, 6> kFormats{{{".png", "image/png"},
-                                                     {".jpg", "image/jpeg"},
-                                                     {".jpeg", "image/jpeg"},
-                                                     {".hdr", "image/vnd.radiance"},
-                                                     {".exr", "image/x-exr"},
-                                                     {".pfm", "image/x-portable-floatmap"}}};
-    if (output == "-") return "image/png";
-    const std::string extension = lower_extension(output);
-    for (const Format& format : kFormats)
-        if (format.extension == extension) return std::string(format.type);
-    throw UserError(ExitCode::usage, output + ": the name must end in .png");
-}
-
 } // namespace
 
 std::string path_of_job(const std::string& id)
@@ -182,10 +164,13 @@ ExitCode tell_end(const api::JobView& job)
     return job.state == api::JobState::expired ? ExitCode::not_found : ExitCode::failed;
 }
 
-std::string fetch_picture(HttpClient& client, const std::string& id, const std::string& output)
+std::string
+fetch_picture(HttpClient& client, const std::string& id, const renderer::PictureEncoding& encoding)
 {
-    HttpRequest request{.path = path_of_job(id) + "/image", .headers = {{"Accept", media_type_of(output)}}};
-    HttpAnswer answer = client.send(request);
+    const std::string query = encoding.bits == 16 ? "?bits=16" : "";
+    HttpAnswer answer =
+        client.send({.path = path_of_job(id) + "/image" + query,
+                     .headers = {{"Accept", std::string(entry_of(encoding.format).media_type)}}});
     if (answer.status == 504)
         throw UserError(ExitCode::timed_out,
                         id + " has no picture yet: heliograph wait " + id + ", then fetch again");

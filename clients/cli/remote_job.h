@@ -6,6 +6,7 @@
 #include "api/job_view.h"
 #include "clients/cli/http_client.h"
 #include "clients/cli/remote_commands.h"
+#include "renderer/description/picture_formats.h"
 
 #include <optional>
 #include <string>
@@ -28,7 +29,8 @@ wait_for_job(HttpClient& client, const std::string& id, std::optional<double> ti
 // ok for a success; else prints why there is no picture and gives the code for it.
 ExitCode tell_end(const api::JobView& job);
 
-// The picture's bytes, compared with their Repr-Digest; the format follows the name's extension.
-std::string fetch_picture(HttpClient& client, const std::string& id, const std::string& output);
+// The picture's bytes, compared with their Repr-Digest.
+std::string
+fetch_picture(HttpClient& client, const std::string& id, const renderer::PictureEncoding& encoding);
 
 } // namespace clients

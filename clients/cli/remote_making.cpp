@@ -1,4 +1,5 @@
 #include "clients/cli/files.h"
+#include "clients/cli/output_format.h"
 #include "clients/cli/remote_commands.h"
 #include "clients/cli/remote_job.h"
 #include "clients/cli/service_errors.h"
@@ -24,9 +25,10 @@ ExitCode wait_command(const ServiceOptions& service, const WaitOptions& options,
 
 ExitCode fetch_command(const ServiceOptions& service, const FetchOptions& options, std::stop_token stop)
 {
+    const renderer::PictureEncoding encoding = encoding_of(options.output, options.bits);
     check_writable(options.output);
     HttpClient client(parse_service_url(service.url), service.patience_s, std::move(stop));
-    write_file(options.output, fetch_picture(client, options.id, options.output));
+    write_file(options.output, fetch_picture(client, options.id, encoding));
     return ExitCode::ok;
 }
 
@@ -49,6 +51,7 @@ void cancel_quietly(const ServiceOptions& service, const std::string& id)
 
 ExitCode run_command(const ServiceOptions& service, const RunOptions& options, const std::stop_token& stop)
 {
+    const renderer::PictureEncoding encoding = encoding_of(options.output, options.bits);
     check_writable(options.output);
     HttpClient client(parse_service_url(service.url), service.patience_s, stop);
     api::JobView job = submit_job(client, options.submit, service.quiet);
@@ -56,7 +59,7 @@ ExitCode run_command(const ServiceOptions& service, const RunOptions& options, c
     try {
         if (!api::is_final(job.state)) job = wait_for_job(client, job.id, options.timeout_s, service.quiet);
         const ExitCode code = tell_end(job);
-        if (code == ExitCode::ok) write_file(options.output, fetch_picture(client, job.id, options.output));
+        if (code == ExitCode::ok) write_file(options.output, fetch_picture(client, job.id, encoding));
         return code;
     } catch (const UserError&) {
         if (stop.stop_requested()) cancel_quietly(service, job.id);

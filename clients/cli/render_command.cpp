@@ -3,28 +3,20 @@
 #include "clients/cli/files.h"
 #include "clients/cli/local_commands.h"
 #include "clients/cli/local_job.h"
+#include "clients/cli/output_format.h"
 #include "clients/cli/progress_bar.h"
 #include "clients/cli/user_error.h"
 #include "renderer/accel/prepared_mesh.h"
-#include "renderer/film/develop.h"
+#include "renderer/film/encode_picture.h"
 #include "renderer/render.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 
 namespace clients {
 namespace {
-
-enum class PictureFormat : std::uint8_t { png, pfm };
-
-PictureFormat format_of(const std::string& output)
-{
-    const std::string extension = lower_extension(output);
-    if (extension == ".pfm") return PictureFormat::pfm;
-    if (extension == ".png" || output == "-") return PictureFormat::png;
-    throw UserError(ExitCode::usage, output + ": the name must end in .png or .pfm");
-}
 
 // The request under the command's options, read again as a job: so options meet the same checks as a scene
 // does.
@@ -89,34 +81,47 @@ renderer::RenderResult render_job(LocalJob& job, bool quiet, const std::stop_tok
     return *std::move(result);
 }
 
-std::vector<std::uint8_t>
-encode_picture(const renderer::RenderResult& result, const api::JobRequest& request, PictureFormat format)
+renderer::Picture picture_of(const renderer::RenderResult& result, const api::JobRequest& request)
 {
-    const renderer::LinearImage linear = result.film.mean();
-    if (format == PictureFormat::pfm) return renderer::encode_pfm(linear);
-    std::vector<renderer::PngText> texts;
+    renderer::Picture picture{.image = result.film.mean(),
+                              .exposure_ev = request.settings.image.exposure_ev,
+                              .tone = request.settings.image.tone,
+                              .texts = {}};
     for (auto& [keyword, text] :
          api::provenance_of(request, render_key_of(request), result.report.accuracy.samples))
-        texts.push_back({keyword, text});
-    return renderer::encode_png(renderer::develop(linear, request.settings.image), texts);
+        picture.texts.push_back({keyword, text});
+    return picture;
+}
+
+// Before the render: after it, the picture would be lost.
+void check_size(const std::string& output, renderer::PictureFormat format, const api::JobRequest& request)
+{
+    const renderer::ImageSettings& image = request.settings.image;
+    const auto region = image.region.value_or(renderer::PixelRect{0, 0, image.width_px, image.height_px});
+    const std::uint32_t most = entry_of(format).most_side_px;
+    if (std::max(region.width, region.height) > most)
+        throw UserError(ExitCode::usage,
+                        output + ": the format holds at most " + std::to_string(most) + " pixels a side");
 }
 
 } // namespace
 
 ExitCode render_command(const RenderOptions& options, const std::stop_token& stop)
 {
-    const PictureFormat format = format_of(options.output);
+    const renderer::PictureEncoding encoding = encoding_of(options.output, options.bits);
     check_writable(options.output);
     if (!options.report.empty()) check_writable(options.report);
     const JobSource source = read_job_source(options.scene);
     LocalJob job = load_local_job(source, with_options(read_request(source), options, source));
+    check_size(options.output, encoding.format, job.request);
     if (!options.quiet)
         for (const std::string& note : job.notes)
             std::fprintf(stderr, "note: %s\n", note.c_str());
 
     renderer::RenderResult result = render_job(job, options.quiet, stop);
     result.report.notes = job.notes;
-    const std::vector<std::uint8_t> bytes = encode_picture(result, job.request, format);
+    const renderer::Picture picture = picture_of(result, job.request);
+    const std::vector<std::uint8_t> bytes = renderer::encode_picture(picture, encoding);
     write_file(options.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!options.report.empty())
         write_file(options.report,

@@ -22,9 +22,9 @@ ExitCode sky_irradiance_command(const SkyTableOptions& options, const std::stop_
 
 struct SkyPanoramaOptions {
     std::string atmosphere; // JSON, an `atmosphere` environment
-    std::string output;     // .png or .pfm
+    std::string output;     // its extension tells the format
     std::uint32_t width = 512, height = 256;
-    double exposure_ev = 0; // of a PNG
+    double exposure_ev = 0; // of a PNG or JPEG
     unsigned threads = 0;
 };
 ExitCode sky_panorama_command(const SkyPanoramaOptions& options, const std::stop_token& stop);

@@ -1,5 +1,7 @@
 #include "clients/cli/sky_options.h"
 
+#include "renderer/description/picture_formats.h"
+
 #include <CLI/CLI.hpp>
 
 namespace clients {
@@ -65,11 +67,16 @@ void add_sky_commands(CLI::App& app,
         "altitude_m.\nW/(m^2 sr); the sun's disk is left out.");
     SkyPanoramaOptions& picture = options.panorama;
     panorama->add_option("--atmosphere", picture.atmosphere, kAtmosphere)->required();
-    panorama->add_option("-o,--output", picture.output, "picture, .png or .pfm")->required();
+    panorama
+        ->add_option("-o,--output",
+                     picture.output,
+                     "picture; its extension tells the format: " + renderer::picture_extensions())
+        ->required();
     panorama->add_option("--width", picture.width, "pixels")->capture_default_str();
     panorama->add_option("--height", picture.height, "pixels")->capture_default_str();
     panorama
-        ->add_option("--exposure-ev", picture.exposure_ev, "of a PNG: light is multiplied by 2 to this power")
+        ->add_option(
+            "--exposure-ev", picture.exposure_ev, "of a PNG or JPEG: light is multiplied by 2 to this power")
         ->capture_default_str();
     panorama->add_option("--threads", picture.threads, "0: one for every core")
         ->envname("HELIOGRAPH_THREADS")

@@ -80,6 +80,16 @@ std::uint8_t quantise_8(float value)
     return static_cast<std::uint8_t>(std::lround(clamp_unit(value) * 255.0f));
 }
 
+std::uint16_t quantise_16(float value)
+{
+    return static_cast<std::uint16_t>(std::lround(clamp_unit(value) * 65535.0f));
+}
+
+std::uint16_t srgb_16_from_linear(float linear)
+{
+    return quantise_16(srgb_from_linear(linear));
+}
+
 std::uint8_t srgb_8_from_linear(float linear)
 {
     static const CodeTable table;

@@ -13,7 +13,7 @@ struct PixelRect {
     friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
-enum class Tone : std::uint8_t { srgb, linear };
+enum class Tone : std::uint8_t { srgb, linear, filmic };
 
 struct ImageSettings {
     std::uint32_t width_px = 800, height_px = 600;

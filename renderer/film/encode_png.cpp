@@ -1,5 +1,6 @@
-#include "renderer/film/develop.h"
+#include "renderer/film/encode_png.h"
 
+#include <bit>
 #include <csetjmp>
 #include <new>
 #include <png.h>
@@ -50,7 +51,8 @@ void on_bytes(png_structp png, png_bytep data, std::size_t size)
 void on_flush(png_structp /*png*/) {}
 
 // Nothing here has a destructor: on an error the library leaves it by longjmp. False: see encoder.error.
-bool write(Encoder& encoder, const Image8& image, const png_text* texts, int text_count)
+template <typename Code>
+bool write(Encoder& encoder, const CodedImage<Code>& image, const png_text* texts, int text_count)
 {
     if (setjmp(png_jmpbuf(encoder.png)) != 0) return false;
     png_set_write_fn(encoder.png, &encoder, on_bytes, on_flush);
@@ -59,7 +61,7 @@ bool write(Encoder& encoder, const Image8& image, const png_text* texts, int tex
                  encoder.info,
                  image.width_px,
                  image.height_px,
-                 8,
+                 8 * sizeof(Code),
                  PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT,
@@ -69,22 +71,22 @@ bool write(Encoder& encoder, const Image8& image, const png_text* texts, int tex
     if (image.srgb) png_set_sRGB(encoder.png, encoder.info, PNG_sRGB_INTENT_PERCEPTUAL);
     if (text_count > 0) png_set_text(encoder.png, encoder.info, texts, text_count);
     png_write_info(encoder.png, encoder.info);
-    const std::size_t row_bytes = image.width_px * std::size_t{3};
+    if (sizeof(Code) > 1 && std::endian::native == std::endian::little) png_set_swap(encoder.png);
+    const std::size_t row_codes = image.width_px * std::size_t{3};
     for (std::size_t y = 0; y < image.height_px; ++y)
-        png_write_row(encoder.png, image.rgb.data() + y * row_bytes);
+        png_write_row(encoder.png, reinterpret_cast<png_const_bytep>(image.rgb.data() + y * row_codes));
     png_write_end(encoder.png, nullptr);
     return true;
 }
 
-} // namespace
-
-std::vector<std::uint8_t> encode_png(const Image8& image, std::span<const PngText> texts)
+template <typename Code>
+std::vector<std::uint8_t> encode(const CodedImage<Code>& image, const PictureTexts& texts)
 {
     std::vector<std::string> copies; // the library wants to write into what it only reads
     copies.reserve(texts.size() * 2);
     std::string no_language;
     std::vector<png_text> entries;
-    for (const PngText& text : texts) {
+    for (const PictureText& text : texts) {
         png_text entry{};
         entry.compression = PNG_ITXT_COMPRESSION_NONE;
         entry.key = copies.emplace_back(text.keyword).data();
@@ -102,6 +104,18 @@ std::vector<std::uint8_t> encode_png(const Image8& image, std::span<const PngTex
         throw std::runtime_error("cannot encode the picture as PNG: " + encoder.error);
     }
     return std::move(encoder.bytes);
+}
+
+} // namespace
+
+std::vector<std::uint8_t> encode_png(const Image8& image, const PictureTexts& texts)
+{
+    return encode(image, texts);
+}
+
+std::vector<std::uint8_t> encode_png(const Image16& image, const PictureTexts& texts)
+{
+    return encode(image, texts);
 }
 
 } // namespace renderer

@@ -31,9 +31,31 @@ std::string path_of(const std::string& id)
     return "/v1/jobs/" + id;
 }
 
-api::ProblemDetails only_png()
+api::ProblemDetails not_acceptable()
 {
-    return problem(406, "not_acceptable", "the picture is to be had as image/png alone: Accept: image/png");
+    std::string all;
+    for (const renderer::PictureFormatEntry& entry : renderer::kPictureFormats)
+        all += (all.empty() ? "" : ", ") + std::string(entry.media_type);
+    return problem(406, "not_acceptable", "the picture is to be had as " + all + ": Accept: image/png, say");
+}
+
+constexpr renderer::PictureEncoding kPng16{renderer::PictureFormat::png, 16};
+
+// Of /image: what Accept likes best, or with ?bits=16 a PNG of that depth.
+std::variant<renderer::PictureEncoding, api::ProblemDetails> wanted_encoding(const Exchange& exchange)
+{
+    const Acceptance accept = read_accept(exchange.header("Accept"));
+    const std::string bits = exchange.query("bits").value_or("8");
+    if (bits != "8" && bits != "16")
+        return query_problem("out_of_range",
+                             "bits=" + printable(bits) + ": a PNG has 8 or 16 bits a channel");
+    if (bits == "16") {
+        if (accept.takes(renderer::PictureFormat::png)) return kPng16;
+        return problem(406, "not_acceptable", "?bits=16 is for PNG: Accept: image/png, or leave it out");
+    }
+    const auto best = accept.best();
+    if (!best) return not_acceptable();
+    return renderer::PictureEncoding{*best, 8};
 }
 
 // queue;dur=3, render;dur=120: in milliseconds, as browsers show them.
@@ -54,8 +76,11 @@ std::string server_timing(const api::JobView& job)
 
 void JobHandlers::add_routes(Router& router)
 {
-    const auto route = [&](const char* method, const char* pattern, void (JobHandlers::*handle)(Exchange&)) {
-        router.add({method, pattern, {}, [this, handle](Exchange& exchange) {
+    const auto route = [&](const char* method,
+                           const char* pattern,
+                           void (JobHandlers::*handle)(Exchange&),
+                           std::vector<std::string> query = {}) {
+        router.add({method, pattern, std::move(query), [this, handle](Exchange& exchange) {
                         const auto id = exchange.path.find("id");
                         if (id != exchange.path.end() && !is_job_id(id->second))
                             return reply_problem(exchange, no_such_job(id->second));
@@ -67,7 +92,7 @@ void JobHandlers::add_routes(Router& router)
     route("GET", "/v1/jobs/{id}", &JobHandlers::get);
     route("DELETE", "/v1/jobs/{id}", &JobHandlers::remove);
     route("POST", "/v1/jobs/{id}/cancel", &JobHandlers::cancel);
-    route("GET", "/v1/jobs/{id}/image", &JobHandlers::image);
+    route("GET", "/v1/jobs/{id}/image", &JobHandlers::image, {"bits"});
     route("GET", "/v1/jobs/{id}/report", &JobHandlers::report);
     route("GET", "/v1/jobs/{id}/scene", &JobHandlers::scene);
 }
@@ -104,7 +129,7 @@ std::optional<api::JobView> JobHandlers::wait(Exchange& exchange,
 void JobHandlers::submit(Exchange& exchange)
 {
     const Acceptance accept = read_accept(exchange.header("Accept"));
-    if (accept.only_images && !accept.png) return reply_problem(exchange, only_png());
+    if (accept.only_images && !accept.best()) return reply_problem(exchange, not_acceptable());
     auto read = read_submit_words(exchange, store_, blobs_, limits_);
     if (auto* refusal = std::get_if<api::ProblemDetails>(&read))
         return reply_problem(exchange, std::move(*refusal));
@@ -129,10 +154,11 @@ void JobHandlers::answer_submitted(Exchange& exchange, const SubmitAnswer& answe
     exchange.response.set_header("Location", path_of(job.id));
     if (answer.replayed) exchange.response.set_header("Idempotency-Replayed", "true");
     const bool failed_by_client = job.state == api::JobState::failed && job.error && job.error->status < 500;
-    const bool picture = read_accept(exchange.header("Accept")).only_images;
+    const Acceptance accept = read_accept(exchange.header("Accept"));
+    const bool picture = accept.only_images;
     if (failed_by_client && (waited || picture)) return reply_problem(exchange, *job.error);
     // Whoever takes nothing but pictures gets one or an error, never JSON in a file that is called .png.
-    if (picture) return reply_image(exchange, job.id);
+    if (picture) return reply_image(exchange, job.id, {accept.best().value(), 8});
     exchange.response.set_header("ETag", '"' + etag_of(job) + '"');
     const bool done = waited && api::is_final(job.state);
     if (!done) exchange.response.set_header("Retry-After", "1");
@@ -186,33 +212,46 @@ void JobHandlers::remove(Exchange& exchange)
 void JobHandlers::image(Exchange& exchange)
 {
     const std::string& id = exchange.path.at("id");
-    if (!read_accept(exchange.header("Accept")).png) return reply_problem(exchange, only_png());
+    auto wanted = wanted_encoding(exchange);
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&wanted))
+        return reply_problem(exchange, std::move(*refusal));
+    const auto encoding = std::get<renderer::PictureEncoding>(wanted);
     std::optional<Waiters::Place> place;
     std::uint64_t seconds = 0;
     if (!enter_wait(exchange, place, seconds)) return;
     if (place) wait(exchange, id, seconds, {});
-    reply_image(exchange, id);
+    // Encoding takes its time, and this thread with it; the PNG of 8 bits is there.
+    if (!place && encoding != renderer::PictureEncoding{} && !(place = waiters_.enter()))
+        return reply_problem(exchange, too_many_waiters(limits_));
+    reply_image(exchange, id, encoding);
 }
 
-void JobHandlers::reply_image(Exchange& exchange, const std::string& id)
+void JobHandlers::reply_image(Exchange& exchange,
+                              const std::string& id,
+                              const renderer::PictureEncoding& encoding)
 {
-    auto found = jobs_.image(id);
+    auto found = jobs_.image(id, encoding);
     const auto view = jobs_.get(id);
     if (auto* refusal = std::get_if<api::ProblemDetails>(&found))
         return reply_problem(exchange, std::move(*refusal));
-    const auto& picture = std::get<JobImage>(found);
+    const auto& picture = std::get<EncodedPicture>(found);
+    const renderer::PictureFormatEntry& entry = entry_of(encoding.format);
     httplib::Response& response = exchange.response;
     response.set_header("Cache-Control", "private, immutable");
-    response.set_header("Content-Disposition", std::string("inline; filename=\"") + id + ".png\"");
+    response.set_header("Content-Disposition",
+                        std::string("inline; filename=\"") + id + std::string(entry.extension) + '"');
+    response.set_header("Vary", "Accept");
     response.set_header("Link", std::string("<") + path_of(id) + "/report>; rel=\"describedby\"");
     const std::string timing = view ? server_timing(*view) : std::string();
     if (!timing.empty()) response.set_header("Server-Timing", timing);
-    const auto from = [png = picture.png](std::uint64_t offset) {
-        return std::span<const std::byte>(*png).subspan(static_cast<std::size_t>(offset));
+    const auto from = [bytes = picture.bytes](std::uint64_t offset) {
+        return std::span<const std::byte>(*bytes).subspan(static_cast<std::size_t>(offset));
     };
-    reply_payload(
-        exchange,
-        {.source = from, .size = picture.png->size(), .digest = picture.digest, .content_type = "image/png"});
+    reply_payload(exchange,
+                  {.source = from,
+                   .size = picture.bytes->size(),
+                   .digest = picture.digest,
+                   .content_type = std::string(entry.media_type)});
 }
 
 void JobHandlers::report(Exchange& exchange)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/description/limits.h"
+#include "renderer/description/picture_formats.h"
 #include "server/http/router.h"
 #include "server/http/waiters.h"
 #include "server/jobs/job_service.h"
@@ -40,7 +41,7 @@ private:
     wait(Exchange& exchange, const std::string& id, std::uint64_t seconds, const std::string& known_etag);
     // The place, and how long; a place that cannot be had is answered with 429 and gives false.
     bool enter_wait(Exchange& exchange, std::optional<Waiters::Place>& place, std::uint64_t& seconds);
-    void reply_image(Exchange& exchange, const std::string& id);
+    void reply_image(Exchange& exchange, const std::string& id, const renderer::PictureEncoding& encoding);
 
     JobService& jobs_;
     Store& store_;

@@ -63,13 +63,32 @@ std::string unquoted(std::string_view word)
     return text;
 }
 
-// q=0, q=0.0 ...: "not this one".
-bool is_refused(const std::vector<std::string_view>& range)
+// The q of a range in thousandths; 1000 where there is none, or none that can be read.
+int quality_of(const std::vector<std::string_view>& range)
 {
-    return std::any_of(range.begin() + 1, range.end(), [](std::string_view parameter) {
-        const std::string low = lower(parameter);
-        return low.rfind("q=0", 0) == 0 && low.find_first_not_of("0.", 2) == std::string::npos;
-    });
+    for (std::size_t i = 1; i < range.size(); ++i) {
+        const std::string low = lower(range[i]);
+        if (low.rfind("q=", 0) != 0) continue;
+        const std::string_view value = std::string_view(low).substr(2);
+        if (value.empty() || value.size() > 5 || (value[0] != '0' && value[0] != '1')) return 1000;
+        if (value.size() > 1 && value[1] != '.') return 1000;
+        int thousandths = (value[0] - '0') * 1000, digit = 1000;
+        for (const char c : value.substr(std::min<std::size_t>(value.size(), 2))) {
+            if (c < '0' || c > '9') return 1000;
+            digit /= 10;
+            thousandths += (c - '0') * digit;
+        }
+        return std::min(thousandths, 1000);
+    }
+    return 1000;
+}
+
+// How exactly a range names a type; 0: not at all.
+int exactness(std::string_view range, std::string_view type)
+{
+    if (range == type) return 3;
+    if (range == "image/*") return 2;
+    return range == "*/*" || range == "*" ? 1 : 0;
 }
 
 } // namespace
@@ -91,23 +110,35 @@ std::optional<std::uint64_t> preferred_wait_s(const std::string& prefer)
     return std::nullopt;
 }
 
+std::optional<renderer::PictureFormat> Acceptance::best() const
+{
+    const auto most = std::max_element(quality.begin(), quality.end());
+    if (*most == 0) return std::nullopt;
+    return renderer::kPictureFormats[static_cast<std::size_t>(most - quality.begin())].format;
+}
+
 Acceptance read_accept(const std::string& accept)
 {
-    if (trimmed(accept).empty()) return {};
-    Acceptance found{true, false};
-    bool png_refused = false;
+    Acceptance found;
+    if (trimmed(accept).empty()) {
+        found.quality.fill(1000);
+        return found;
+    }
+    found.only_images = true;
+    std::array<int, renderer::kPictureFormats.size()> exact{};
     for (const std::string_view item : split(accept, ',')) {
         if (item.empty()) continue;
         const std::vector<std::string_view> range = split(item, ';');
         const std::string type = lower(range.front());
-        if (is_refused(range)) {
-            png_refused = png_refused || type == "image/png";
-            continue;
+        const int quality = quality_of(range);
+        if (quality != 0 && type.rfind("image/", 0) != 0) found.only_images = false;
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            const int how = exactness(type, renderer::kPictureFormats[i].media_type);
+            if (how == 0 || how < exact[i]) continue;
+            found.quality[i] = how > exact[i] ? quality : std::max(found.quality[i], quality);
+            exact[i] = how;
         }
-        if (type.rfind("image/", 0) != 0) found.only_images = false;
-        if (type == "image/png" || type == "image/*" || type == "*/*" || type == "*") found.png = true;
     }
-    found.png = found.png && !png_refused;
     return found;
 }
 

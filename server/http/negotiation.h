@@ -2,6 +2,9 @@
 // not faults: they are left unheard, as the RFCs say.
 #pragma once
 
+#include "renderer/description/picture_formats.h"
+
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,9 +14,15 @@ namespace server {
 // N of `wait=N`; nothing where there is none.
 std::optional<std::uint64_t> preferred_wait_s(const std::string& prefer);
 
+// Accept (RFC 9110, 12.5.1): of the ranges that name a format the most exact one counts, then its q.
 struct Acceptance {
     bool only_images = false; // every type that it names is image/...
-    bool png = true;          // a PNG would do
+    std::array<int, renderer::kPictureFormats.size()>
+        quality{}; // thousandths, as in the table; 0: not this one
+
+    bool takes(renderer::PictureFormat format) const { return quality[static_cast<std::size_t>(format)] > 0; }
+    // What suits best, of equals the first of the table; nothing: none of them.
+    std::optional<renderer::PictureFormat> best() const;
 };
 Acceptance read_accept(const std::string& accept);
 

@@ -134,6 +134,27 @@ api::ProblemDetails picture_lost_problem(const JobId& id, const std::string& ass
                    true);
 }
 
+api::ProblemDetails png_alone_problem(const JobId& id)
+{
+    return problem(
+        406,
+        "not_acceptable",
+        "job " + id +
+            " was rendered by an older build, which kept its PNG alone: Accept: image/png, or submit "
+            "the scene again for other formats",
+        false);
+}
+
+api::ProblemDetails format_too_small_problem(renderer::PictureFormat format)
+{
+    const renderer::PictureFormatEntry& entry = entry_of(format);
+    return problem(406,
+                   "not_acceptable",
+                   std::string(entry.media_type) + " holds at most " + std::to_string(entry.most_side_px) +
+                       " pixels a side, and this picture has more: Accept: image/png",
+                   false);
+}
+
 api::ProblemDetails result_too_large_problem(std::uint64_t bytes, const renderer::Limits& limits)
 {
     return api::problem_from_faults(

@@ -4,6 +4,7 @@
 #include "api/problem.h"
 #include "renderer/description/fault_list.h"
 #include "renderer/description/limits.h"
+#include "renderer/description/picture_formats.h"
 #include "renderer/description/scene_description.h"
 #include "server/import/import_service.h"
 #include "server/store/store.h"
@@ -32,6 +33,10 @@ api::ProblemDetails expired_problem(const JobId& id);
 api::ProblemDetails renders_again_problem(const JobId& id);
 // The same, but it cannot render: an asset that it takes is gone.
 api::ProblemDetails picture_lost_problem(const JobId& id, const std::string& asset);
+
+// 406: of a picture that an older build kept, and of one that has more pixels a side than the format.
+api::ProblemDetails png_alone_problem(const JobId& id);
+api::ProblemDetails format_too_small_problem(renderer::PictureFormat format);
 
 // How a job fails.
 api::ProblemDetails result_too_large_problem(std::uint64_t bytes, const renderer::Limits& limits);

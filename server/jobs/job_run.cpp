@@ -2,16 +2,16 @@
 
 #include "api/provenance.h"
 #include "renderer/accel/prepared_mesh.h"
-#include "renderer/film/develop.h"
+#include "renderer/film/encode_picture.h"
 #include "renderer/plan/budget.h"
 #include "renderer/plan/plan.h"
 #include "renderer/scene/scene.h"
 #include "server/jobs/job_problems.h"
+#include "server/jobs/kept_picture.h"
 #include "server/store/blob_store.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <utility>
 
 namespace server {
@@ -89,18 +89,22 @@ double aspect_of(const renderer::ImageSettings& image)
 
 JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, const renderer::RenderResult& rendered)
 {
-    std::vector<renderer::PngText> texts;
+    renderer::Picture picture{.image = rendered.film.mean(),
+                              .exposure_ev = run.request.settings.image.exposure_ev,
+                              .tone = run.request.settings.image.tone,
+                              .texts = {}};
     for (auto& [keyword, text] :
          api::provenance_of(run.request, run.render_key, rendered.report.accuracy.samples))
-        texts.push_back({keyword, text});
-    const std::vector<std::uint8_t> png =
-        renderer::encode_png(renderer::develop(rendered.film.mean(), run.request.settings.image), texts);
-    auto bytes = std::make_shared<std::vector<std::byte>>(png.size());
-    std::memcpy(bytes->data(), png.data(), png.size());
+        picture.texts.push_back({keyword, text});
+    const std::vector<std::uint8_t> png = renderer::encode_picture(picture, {});
+    const auto* first = reinterpret_cast<const std::byte*>(png.data());
 
     JobOutcome outcome;
     outcome.phase = LivePhase::succeeded;
-    outcome.result.image_digest = digest_of(std::span<const std::byte>(*bytes));
+    outcome.png = std::make_shared<const std::vector<std::byte>>(first, first + png.size());
+    outcome.png_digest = digest_of(std::span<const std::byte>(*outcome.png));
+    outcome.kept = std::make_shared<const std::vector<std::byte>>(pack_picture(picture, png));
+    outcome.result.image_digest = digest_of(std::span<const std::byte>(*outcome.kept));
     outcome.result.report_json =
         api::write_report(rendered.report, run.id, run.render_key, run.request.settings.quality, false);
     api::JobRequest executed = run.request;
@@ -109,7 +113,6 @@ JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, const ren
     outcome.result.samples = rendered.report.accuracy.samples;
     outcome.result.reusable = rendered.report.accuracy.stop_reason == renderer::StopReason::samples;
     outcome.non_finite_samples = rendered.report.numerics.non_finite_samples;
-    outcome.png = std::move(bytes);
     return outcome;
 }
 

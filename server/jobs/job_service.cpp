@@ -4,7 +4,6 @@
 #include "server/jobs/job_problems.h"
 #include "server/jobs/job_views.h"
 #include "server/jobs/live_jobs.h"
-#include "server/jobs/picture_cache.h"
 #include "server/jobs/result_keeper.h"
 #include "server/jobs/stored_pictures.h"
 #include "server/jobs/submission.h"
@@ -273,14 +272,16 @@ std::variant<JobOutcome, api::ProblemDetails> JobService::State::finished(const 
     return outcome;
 }
 
-std::variant<JobImage, api::ProblemDetails> JobService::image(const JobId& id)
+std::variant<EncodedPicture, api::ProblemDetails> JobService::image(const JobId& id,
+                                                                    const renderer::PictureEncoding& encoding)
 {
     auto ended = state_->finished(id, State::Read::picture);
     if (auto* problem = std::get_if<api::ProblemDetails>(&ended)) return std::move(*problem);
     const auto& outcome = std::get<JobOutcome>(ended);
     const std::string& digest = outcome.result.image_digest;
-    if (outcome.png) return JobImage{outcome.png, digest};
-    return state_->stored_pictures.get(id, digest);
+    if (outcome.png && encoding == renderer::PictureEncoding{})
+        return EncodedPicture{outcome.png, outcome.png_digest};
+    return state_->stored_pictures.get(id, digest, outcome.kept, encoding);
 }
 
 std::variant<std::string, api::ProblemDetails> JobService::report(const JobId& id)

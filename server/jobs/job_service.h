@@ -9,7 +9,9 @@
 #include "api/job_view.h"
 #include "api/problem.h"
 #include "renderer/description/limits.h"
+#include "renderer/description/picture_formats.h"
 #include "server/import/import_service.h"
+#include "server/jobs/picture_cache.h"
 #include "server/log/log.h"
 #include "server/store/blob_store.h"
 #include "server/store/store.h"
@@ -45,11 +47,6 @@ struct ListWords {
     std::string cursor{}; // empty: from the newest
 };
 
-struct JobImage {
-    std::shared_ptr<const std::vector<std::byte>> png;
-    std::string digest; // "sha256:..." of the bytes
-};
-
 struct JobServiceOptions {
     renderer::Limits limits;
     unsigned threads = 0; // of the render pool; 0: every core
@@ -80,8 +77,10 @@ public:
     std::optional<api::ProblemDetails> remove(const JobId& id);
 
     // The picture, or why not: 404, 504 still_running, 409 render_failed, 410 expired. A picture that the
-    // disk lost makes the job queued again (504), or is named (500 result_damaged) if a mesh is gone too.
-    std::variant<JobImage, api::ProblemDetails> image(const JobId& id);
+    // disk lost makes the job queued again (504), or is named (500 result_damaged) if a mesh is gone too. 406
+    // where the picture cannot be had in this encoding. What is not a PNG of 8 bits takes the time to encode it.
+    std::variant<EncodedPicture, api::ProblemDetails> image(const JobId& id,
+                                                            const renderer::PictureEncoding& encoding = {});
     std::variant<std::string, api::ProblemDetails> report(const JobId& id); // JSON text, under this id
     std::variant<std::string, api::ProblemDetails>
     scene(const JobId& id); // as executed, or as accepted until then

@@ -25,7 +25,7 @@
 
 namespace server {
 
-using PngBytes = std::shared_ptr<const std::vector<std::byte>>;
+using PictureBytes = std::shared_ptr<const std::vector<std::byte>>;
 
 enum class LivePhase : std::uint8_t { queued, preparing, running, canceling, succeeded, failed, canceled };
 
@@ -33,7 +33,9 @@ enum class LivePhase : std::uint8_t { queued, preparing, running, canceling, suc
 struct JobOutcome {
     LivePhase phase = LivePhase::failed; // succeeded, failed or canceled
     JobResult result{};                  // when succeeded
-    PngBytes png{};                      // when succeeded; empty where the blob is already stored
+    PictureBytes kept{}; // when succeeded, as in kept_picture.h; empty where it is already stored
+    PictureBytes png{};  // beside `kept`, with the digest of its own
+    std::string png_digest{};
     std::uint64_t non_finite_samples = 0;
     api::ProblemDetails error{}; // when failed
     std::int64_t finished_ms = 0;

@@ -14,6 +14,7 @@ namespace server {
 namespace {
 
 constexpr std::size_t kMostWaiting = 8;
+constexpr std::uint64_t kMostWaitingBytes = 512u << 20;
 constexpr std::chrono::seconds kRetryAfter{1};
 
 } // namespace
@@ -40,13 +41,23 @@ void ResultKeeper::stop()
 void ResultKeeper::keep(KeptOutcome kept)
 {
     std::unique_lock lock(mutex_);
-    if (kept.outcome->png) {
-        rooms_.pictures.put(kept.outcome->result.image_digest, kept.outcome->png);
-        if (kept.lease) change_.wait(lock, [&] { return closing_ || waiting_.size() < kMostWaiting; });
+    const JobOutcome& outcome = *kept.outcome;
+    if (outcome.kept) {
+        rooms_.pictures.put(picture_key(outcome.result.image_digest, {}), {outcome.png, outcome.png_digest});
+        if (kept.lease) change_.wait(lock, [&] { return closing_ || has_room_for(outcome); });
     }
     waiting_.push_back(std::move(kept));
     lock.unlock();
     change_.notify_all();
+}
+
+// One is taken whatever its size.
+bool ResultKeeper::has_room_for(const JobOutcome& outcome) const
+{
+    std::uint64_t bytes = stored_bytes_of(outcome);
+    for (const KeptOutcome& kept : waiting_)
+        bytes += stored_bytes_of(*kept.outcome);
+    return waiting_.empty() || (waiting_.size() < kMostWaiting && bytes <= kMostWaitingBytes);
 }
 
 void ResultKeeper::run(const std::stop_token& stop)
@@ -100,8 +111,8 @@ void ResultKeeper::store_outcome(const KeptOutcome& kept)
     const JobOutcome& outcome = *kept.outcome;
     {
         const std::lock_guard results(results_);
-        if (outcome.png && !fits(stored_bytes_of(outcome))) free_room(stored_bytes_of(outcome));
-        if (outcome.png) rooms_.blobs.put(BlobStore::Kind::result, *outcome.png);
+        if (outcome.kept && !fits(stored_bytes_of(outcome))) free_room(stored_bytes_of(outcome));
+        if (outcome.kept) rooms_.blobs.put(BlobStore::Kind::result, *outcome.kept);
         if (kept.lease) store_lease(kept, *kept.lease);
         for (const JobId& id : kept.queued)
             rooms_.store.complete_queued(id, outcome.result, outcome.finished_ms);

@@ -69,6 +69,7 @@ public:
 
 private:
     void run(const std::stop_token& stop);
+    bool has_room_for(const JobOutcome& outcome) const; // mutex_ is held
     bool try_keep(const KeptOutcome& kept);
     void store_outcome(const KeptOutcome& kept);
     void store_lease(const KeptOutcome& kept, const Lease& lease);

@@ -15,7 +15,7 @@ constexpr std::size_t kAtOnce = 64; // a transaction
 
 std::uint64_t stored_bytes_of(const JobOutcome& outcome)
 {
-    return (outcome.png ? outcome.png->size() : 0) + outcome.result.report_json.size() +
+    return (outcome.kept ? outcome.kept->size() : 0) + outcome.result.report_json.size() +
            outcome.result.scene_json.size();
 }
 

@@ -1,30 +1,89 @@
 #include "server/jobs/stored_pictures.h"
 
+#include "renderer/film/encode_picture.h"
 #include "server/jobs/job_problems.h"
+#include "server/jobs/kept_picture.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace server {
 
-std::variant<JobImage, api::ProblemDetails> StoredPictures::get(const JobId& id, const std::string& digest)
+namespace {
+
+bool is_kept_as_sent(const renderer::PictureEncoding& encoding)
 {
-    if (PngBytes cached = rooms_.pictures.find(digest)) return JobImage{std::move(cached), digest};
-    std::string why_not;
-    PngBytes png = read(digest, why_not);
-    if (!png) {
-        // While this is held no picture comes or goes: what is lost now is lost.
-        const auto hold = rooms_.keeper.hold_results();
-        png = read(digest, why_not);
-        if (!png) return render_again(id, digest, why_not);
-    }
-    rooms_.pictures.put(digest, png);
-    return JobImage{std::move(png), digest};
+    return encoding == renderer::PictureEncoding{};
 }
 
-PngBytes StoredPictures::read(const std::string& digest, std::string& why_not)
+EncodedPicture named(std::vector<std::byte> bytes)
+{
+    EncodedPicture picture{std::make_shared<const std::vector<std::byte>>(std::move(bytes)), {}};
+    picture.digest = digest_of(std::span<const std::byte>(*picture.bytes));
+    return picture;
+}
+
+// Of a picture that was kept.
+StoredPictures::Answer
+encode(const JobId& id, std::span<const std::byte> blob, const renderer::PictureEncoding& encoding)
+{
+    if (is_kept_as_sent(encoding)) {
+        const auto png = png_of(blob);
+        return named({png.begin(), png.end()});
+    }
+    const std::optional<renderer::Picture> picture = unpack_picture(blob);
+    if (!picture) return png_alone_problem(id);
+    const std::uint32_t most = entry_of(encoding.format).most_side_px;
+    if (std::max(picture->image.width_px, picture->image.height_px) > most)
+        return format_too_small_problem(encoding.format);
+    const std::vector<std::uint8_t> bytes = renderer::encode_picture(*picture, encoding);
+    const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
+    return named({first, first + bytes.size()});
+}
+
+} // namespace
+
+StoredPictures::Answer StoredPictures::get(const JobId& id,
+                                           const std::string& digest,
+                                           const PictureBytes& kept,
+                                           const renderer::PictureEncoding& encoding)
+{
+    const std::string key = picture_key(digest, encoding);
+    if (auto cached = rooms_.pictures.find(key)) return *std::move(cached);
+    std::optional<EncodingTurns::Turn> turn;
+    if (!is_kept_as_sent(encoding)) {
+        turn.emplace(turns_, key);
+        if (auto cached = rooms_.pictures.find(key)) return *std::move(cached); // while this waited
+    }
+    PictureBytes bytes = kept;
+    if (!bytes) {
+        auto found = blob(id, digest);
+        if (auto* problem = std::get_if<api::ProblemDetails>(&found)) return std::move(*problem);
+        bytes = std::move(std::get<PictureBytes>(found));
+    }
+    Answer answer = encode(id, *bytes, encoding);
+    if (const auto* picture = std::get_if<EncodedPicture>(&answer)) rooms_.pictures.put(key, *picture);
+    return answer;
+}
+
+std::variant<PictureBytes, api::ProblemDetails> StoredPictures::blob(const JobId& id,
+                                                                     const std::string& digest)
+{
+    std::string why_not;
+    PictureBytes bytes = read(digest, why_not);
+    if (bytes) return bytes;
+    // While this is held no picture comes or goes: what is lost now is lost.
+    const auto hold = rooms_.keeper.hold_results();
+    bytes = read(digest, why_not);
+    if (bytes) return bytes;
+    return render_again(id, digest, why_not);
+}
+
+PictureBytes StoredPictures::read(const std::string& digest, std::string& why_not)
 {
     try {
         if (auto bytes = rooms_.blobs.read(BlobStore::Kind::result, digest))

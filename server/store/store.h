@@ -59,7 +59,7 @@ struct JobSpec {
 };
 
 struct JobResult {
-    std::string image_digest; // blob, "sha256:..."
+    std::string image_digest; // of the blob that keeps the picture, "sha256:..."
     std::string report_json;
     std::string scene_json;    // the scene as executed
     std::uint32_t samples = 0; // in every pixel

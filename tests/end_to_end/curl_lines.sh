@@ -35,6 +35,19 @@ cmp json.png fetched.png || fail "the fetched picture is another"
 
 equal 200 "$(curl -sS -o /dev/null -w '%{http_code}' -T knot.obj "$U/v1/assets/sha256:$(sha256sum knot.obj | cut -d' ' -f1)")" "a second upload"
 
+# The same film in every format, by GET and as the answer to a POST.
+for format in jpeg:ffd8ffe0 vnd.radiance:233f5241 x-exr:762f3101 x-portable-floatmap:50460a39; do
+    type=image/${format%%:*}
+    curl --fail -sS -H "Accept: $type" -o got "$U/v1/jobs/$id/image"
+    equal "${format##*:}" "$(od -An -tx1 -N4 got | tr -d ' ')" "the first bytes of $type"
+    curl --fail -sS --json @scene.json -H 'Prefer: wait=30' -H "Accept: $type" -o posted "$U/v1/jobs"
+    cmp got posted || fail "$type as the answer to a POST is another file"
+done
+curl --fail -sS -o deep.png "$U/v1/jobs/$id/image?bits=16"
+is_png deep.png
+equal 10 "$(od -An -tx1 -j24 -N1 deep.png | tr -d ' ')" "bits a channel"
+equal 406 "$(curl -sS -o answer -w '%{http_code}' -H 'Accept: image/webp' "$U/v1/jobs/$id/image")" "a format that is not written"
+
 # The classic slip, and with a body far over 8 KiB.
 equal 202 "$(curl -sS -o /dev/null -w '%{http_code}' -d @scene.json "$U/v1/jobs")" "form content type"
 jq '.labels = ([range(64) | {key: "label_\(.)", value: ("a value that takes room, number \(.), " * 4)}] | from_entries)' scene.json >large.json

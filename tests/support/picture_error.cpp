@@ -1,6 +1,6 @@
 #include "tests/support/picture_error.h"
 
-#include "renderer/film/develop.h"
+#include "renderer/film/encode_png.h"
 
 #include <cmath>
 #include <cstring>

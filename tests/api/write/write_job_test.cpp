@@ -63,7 +63,9 @@ private:
         s.image.height_px = static_cast<std::uint32_t>(whole(1, 4000));
         if (coin()) s.image.region = {0, s.image.height_px - 1, s.image.width_px, 1};
         s.image.exposure_ev = unit() * 10 - 5;
-        s.image.tone = coin() ? renderer::Tone::srgb : renderer::Tone::linear;
+        s.image.tone = coin()   ? renderer::Tone::srgb
+                       : coin() ? renderer::Tone::linear
+                                : renderer::Tone::filmic;
         if (coin())
             s.quality.samples = static_cast<std::uint32_t>(whole(1, 65536));
         else

@@ -1,6 +1,9 @@
 #include "clients/cli/picture_file.h"
 #include "clients/cli/user_error.h"
-#include "renderer/film/develop.h"
+#include "renderer/film/encode_exr.h"
+#include "renderer/film/encode_jpeg.h"
+#include "renderer/film/encode_pfm.h"
+#include "renderer/film/encode_png.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -74,6 +77,40 @@ TEST(PictureFile, DecodesPngAsSrgb)
     EXPECT_NEAR(image.pixels[128].b, 0.2158605, 1e-6);
     const renderer::Image8 again = renderer::develop(image, renderer::ImageSettings{});
     EXPECT_EQ(again.rgb, encoded.rgb);
+}
+
+TEST(PictureFile, ReadsBackEveryBitOfAnExr)
+{
+    const tests::TempFolder folder;
+    const LinearImage image = gradient();
+    const std::string exr = text_of(encode_exr(3, 2, exr_channels(image)));
+    const LinearImage back = read_picture(folder.write("a.exr", exr));
+    EXPECT_EQ(back.width_px, 3u);
+    EXPECT_EQ(back.height_px, 2u);
+    EXPECT_TRUE(back.pixels == image.pixels);
+    EXPECT_THROW(read_picture(folder.write("cut.exr", exr.substr(0, exr.size() / 2))), UserError);
+    EXPECT_THROW(read_picture(folder.write("head.exr", exr.substr(0, 8))), UserError);
+}
+
+TEST(PictureFile, ReadsAnExrOfLuminanceAndRefusesOneWithoutColours)
+{
+    const tests::TempFolder folder;
+    const std::vector<float> values{1, 2};
+    const LinearImage grey =
+        read_picture(folder.write("y.exr", text_of(renderer::encode_exr(2, 1, {{"Y", values.data()}}))));
+    EXPECT_TRUE(grey.pixels == (std::vector<Rgb>{{1, 1, 1}, {2, 2, 2}}));
+    EXPECT_THROW(read_picture(folder.write(
+                     "z.exr", text_of(renderer::encode_exr(2, 1, {{"depth.Z", values.data()}})))),
+                 UserError);
+}
+
+TEST(PictureFile, DecodesJpegAsSrgb)
+{
+    const tests::TempFolder folder;
+    const renderer::Image8 grey{16, 16, std::vector<std::uint8_t>(16 * 16 * 3, 128), true};
+    const LinearImage image = read_picture(folder.write("a.jpg", text_of(renderer::encode_jpeg(grey))));
+    ASSERT_EQ(image.pixels.size(), 256u);
+    EXPECT_NEAR(image.pixels[17].g, 0.2158605, 1e-6);
 }
 
 TEST(PictureFile, RefusesWhatIsNoPicture)

@@ -11,6 +11,7 @@
 
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using tests::bytes_of;
@@ -281,6 +282,17 @@ TEST(HeliographCompare, MeasuresAndRefusesDifferentSizes)
     const ProgramRun across = heliograph({"compare", folder.file("a.png"), folder.file("a.pfm")});
     EXPECT_EQ(across.exit_code, 0) << across.err;
     EXPECT_THAT(across.out, StartsWith("rmse "));
+    for (const char* name : {"c.exr", "c.hdr", "c.jpg"}) {
+        ASSERT_EQ(heliograph({"render", "-", "-o", folder.file(name)}, words).exit_code, 0) << name;
+        const ProgramRun run = heliograph({"compare", folder.file(name), folder.file("a.pfm")});
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+    }
+    const ProgramRun exact = heliograph({"compare", folder.file("c.exr"), folder.file("a.pfm"), "--json"});
+    EXPECT_EQ(exact.out, same.out);
+    ASSERT_EQ(heliograph({"render", "-", "-o", folder.file("d.png"), "--bits", "16"}, words).exit_code, 0);
+    EXPECT_THAT(bytes_of(folder.file("d.png")).substr(16, 9), EndsWith("\x10")) << "bits a channel";
+    EXPECT_EQ(heliograph({"render", "-", "-o", folder.file("d.exr"), "--bits", "16"}, words).exit_code, 2);
+    EXPECT_EQ(heliograph({"render", "-", "-o", folder.file("d.gif")}, words).exit_code, 2);
     const ProgramRun sizes = heliograph({"compare", folder.file("a.png"), folder.file("b.png")});
     EXPECT_EQ(sizes.exit_code, 2);
     EXPECT_THAT(sizes.err, HasSubstr("8x8"));

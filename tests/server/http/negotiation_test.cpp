@@ -54,19 +54,51 @@ TEST(Prefer, MalformedWishesAreLeftUnheard)
 
 TEST(Accept, TellsWhetherOnlyPicturesWillDo)
 {
-    const auto read = [](const char* text) { return server::read_accept(text); };
-    EXPECT_FALSE(read("").only_images);
-    EXPECT_TRUE(read("").png);
-    EXPECT_FALSE(read("*/*").only_images);
-    EXPECT_TRUE(read("image/png").only_images && read("image/png").png);
-    EXPECT_TRUE(read("IMAGE/*;q=0.5").only_images && read("IMAGE/*;q=0.5").png);
-    EXPECT_TRUE(read("image/jpeg, image/webp").only_images);
-    EXPECT_FALSE(read("image/jpeg, image/webp").png);
-    EXPECT_FALSE(read("image/*, image/png;q=0").png);
-    EXPECT_FALSE(read("image/png, application/json").only_images);
-    EXPECT_TRUE(read("image/png, application/json;q=0").only_images);
-    EXPECT_FALSE(read("application/json").png);
-    EXPECT_TRUE(read("image/avif,image/webp,*/*;q=0.8").png);
+    const auto only = [](const char* text) { return server::read_accept(text).only_images; };
+    EXPECT_FALSE(only("") || only("*/*") || only("image/png, application/json") || only("application/json"));
+    EXPECT_TRUE(only("image/png") && only("IMAGE/*;q=0.5") && only("image/jpeg, image/webp"));
+    EXPECT_TRUE(only("image/png, application/json;q=0"));
+}
+
+TEST(Accept, ChoosesTheFormatThatSuitsBest)
+{
+    using renderer::PictureFormat;
+    struct Case {
+        const char* accept;
+        std::optional<PictureFormat> best;
+    };
+    constexpr PictureFormat png = PictureFormat::png, jpeg = PictureFormat::jpeg, hdr = PictureFormat::hdr,
+                            exr = PictureFormat::exr, pfm = PictureFormat::pfm;
+    for (const auto& [accept, best] : {
+             Case{"", png},
+             Case{"*/*", png},
+             Case{"*", png},
+             Case{"image/*", png},
+             Case{"image/png", png},
+             Case{"image/jpeg", jpeg},
+             Case{"image/vnd.radiance", hdr},
+             Case{"Image/X-EXR", exr},
+             Case{"image/x-portable-floatmap", pfm},
+             Case{"image/jpeg, image/png", png}, // alike: the table's order
+             Case{"image/jpeg, image/png;q=0.9", jpeg},
+             Case{"image/jpeg;q=0.899, image/png;q=0.9", png},
+             Case{"image/*;q=0.1, image/x-exr;q=0.2", exr},
+             Case{"image/*, image/png;q=0", jpeg},
+             Case{"image/png;q=0.5, */*", jpeg}, // the exact range counts for PNG
+             Case{"image/png;q=0.000, image/x-exr ; Q=0.001", exr},
+             Case{"image/png;level=1", png},
+             Case{"image/png;q=oops", png}, // left unheard
+             Case{"image/png;q=1.5, image/jpeg", png},
+             Case{"image/avif,image/webp,*/*;q=0.8", png},
+             Case{"image/jpeg, application/json", jpeg},
+             Case{"image/webp", std::nullopt},
+             Case{"application/json", std::nullopt},
+             Case{"image/png;q=0", std::nullopt},
+             Case{"*/*;q=0", std::nullopt},
+         })
+        EXPECT_EQ(server::read_accept(accept).best(), best) << accept;
+    EXPECT_TRUE(server::read_accept("image/jpeg, image/png;q=0.1").takes(png));
+    EXPECT_FALSE(server::read_accept("image/jpeg").takes(png));
 }
 
 TEST(CacheControl, NoCacheAsksForAFreshRender)

@@ -160,7 +160,11 @@ TEST_F(OpenApi, DescribesConditionsRangesAndPicturesNotYetThere)
     const std::string job = filled("/v1/jobs/{id}", done, "");
     EXPECT_EQ(ask("/v1/jobs/{id}", "GET", job, {{"If-None-Match", service.get(job).header("etag")}}).status,
               304);
-    EXPECT_EQ(ask(image, "GET", filled(image, done, ""), {{"Accept", "image/jpeg"}}).status, 406);
+    EXPECT_EQ(ask(image, "GET", filled(image, done, ""), {{"Accept", "image/webp"}}).status, 406);
+    for (const char* type : {"image/jpeg", "image/vnd.radiance", "image/x-exr", "image/x-portable-floatmap"})
+        EXPECT_EQ(ask(image, "GET", filled(image, done, ""), {{"Accept", type}}).status, 200) << type;
+    EXPECT_EQ(ask(image, "GET", filled(image, done, "") + "?bits=16").status, 200);
+    EXPECT_EQ(ask(image, "GET", filled(image, done, "") + "?bits=12").status, 422);
     const std::string running = service.submit(tests::long_job()).header("location");
     EXPECT_EQ(ask("/v1/jobs/{id}", "GET", running).status, 200);
     EXPECT_EQ(ask(image, "GET", running + "/image").status, 504);
@@ -200,7 +204,8 @@ TEST_F(OpenApi, DescribesWhatSubmissionsAnswer)
     EXPECT_EQ(submit(tests::quick_job(7)), 202);
     EXPECT_EQ(submit(tests::quick_job(7), {{"Prefer", "wait=30"}}), 200);
     EXPECT_EQ(submit(tests::quick_job(7), {{"Prefer", "wait=30"}, {"Accept", "image/png"}}), 200);
-    EXPECT_EQ(submit(tests::quick_job(7), {{"Accept", "image/jpeg"}}), 406);
+    EXPECT_EQ(submit(tests::quick_job(7), {{"Prefer", "wait=30"}, {"Accept", "image/x-exr"}}), 200);
+    EXPECT_EQ(submit(tests::quick_job(7), {{"Accept", "image/webp"}}), 406);
     EXPECT_EQ(submit("{", {}), 400);
     EXPECT_EQ(submit("{}", {}), 422);
     EXPECT_EQ(submit(std::string(2u << 20, ' '), {}), 413);

@@ -18,6 +18,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <thread>
 #include <variant>
 
 namespace tests {
@@ -122,16 +123,31 @@ inline api::JobView running(Node& node, const server::JobId& id)
     }
 }
 
-inline server::JobImage picture(Node& node, const server::JobId& id)
+inline server::EncodedPicture picture(Node& node, const server::JobId& id)
 {
-    return expect<server::JobImage>(node.jobs.image(id));
+    return expect<server::EncodedPicture>(node.jobs.image(id));
 }
 
 inline std::string digest_of_picture(Node& node, const server::JobId& id)
 {
-    const server::JobImage image = picture(node, id);
-    EXPECT_EQ(server::digest_of(std::span<const std::byte>(*image.png)), image.digest);
+    const server::EncodedPicture image = picture(node, id);
+    EXPECT_EQ(server::digest_of(std::span<const std::byte>(*image.bytes)), image.digest);
     return image.digest;
+}
+
+// The name of the blob that keeps the job's picture, once the store knows it.
+inline std::string blob_of(server::Store& store, const server::JobId& id)
+{
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    for (;;) {
+        const auto record = store.find({}, id);
+        if (record && record->result) return record->result->image_digest;
+        if (std::chrono::steady_clock::now() > deadline) {
+            ADD_FAILURE() << "the result of job " << id << " was never stored";
+            return {};
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
 }
 
 inline api::ProblemDetails image_refusal(Node& node, const server::JobId& id)

@@ -217,10 +217,11 @@ TEST_P(JobService, ForgetsAJobAndItsPicture)
     const auto node = open();
     node->jobs.start();
     const api::JobView done = tests::succeeded(*node, submit(*node, tests::quick_job()).id);
-    const std::string digest = tests::digest_of_picture(*node, done.id);
+    const std::string blob = tests::blob_of(*node->store, done.id);
+    EXPECT_TRUE(node->blobs.has(server::BlobStore::Kind::result, blob));
     EXPECT_TRUE(tests::removed(*node, done.id));
     EXPECT_FALSE(node->jobs.get(done.id));
-    EXPECT_FALSE(node->blobs.has(server::BlobStore::Kind::result, digest));
+    EXPECT_FALSE(node->blobs.has(server::BlobStore::Kind::result, blob));
     EXPECT_EQ(tests::image_refusal(*node, done.id).status, 404);
     EXPECT_FALSE(tests::removed(*node, done.id));
 }

@@ -38,7 +38,7 @@ const std::vector<Damage>& damages()
 }
 
 struct Kept {
-    std::string id, digest;
+    std::string id, digest, blob;
     std::filesystem::path file;
 };
 
@@ -49,7 +49,8 @@ Kept keep(Node& node, const std::string& body)
     const std::string id = tests::succeeded(node, submit(node, body).id).id;
     const std::string digest = tests::digest_of_picture(node, id);
     node.jobs.stop();
-    return {id, digest, node.blobs.path(Kind::result, digest)};
+    const std::string blob = tests::blob_of(*node.store, id);
+    return {id, digest, blob, node.blobs.path(Kind::result, blob)};
 }
 
 void expect_again(Node& node, const std::string& id)
@@ -80,7 +81,7 @@ TEST_P(LostPicture, IsRenderedAgainAfterARestart)
         EXPECT_EQ(tests::digest_of_picture(*node, kept.id), kept.digest);
         tests::expect<std::string>(node->jobs.report(kept.id));
         node->jobs.stop();
-        EXPECT_TRUE(open()->blobs.read(Kind::result, kept.digest));
+        EXPECT_TRUE(open()->blobs.read(Kind::result, kept.blob));
     }
 }
 
@@ -103,7 +104,7 @@ TEST_P(LostPicture, IsServedWhileMemoryHasIt)
     node->jobs.start();
     const std::string id = tests::succeeded(*node, submit(*node, tests::quick_job()).id).id;
     const std::string digest = tests::digest_of_picture(*node, id);
-    std::filesystem::remove(node->blobs.path(Kind::result, digest));
+    std::filesystem::remove(node->blobs.path(Kind::result, tests::blob_of(*node->store, id)));
     EXPECT_EQ(tests::digest_of_picture(*node, id), digest);
 }
 
@@ -131,7 +132,7 @@ TEST_P(LostPicture, IsRenderedOnceForAllWhoSharedIt)
         twin = tests::succeeded(*node, submit(*node, tests::quick_job()).id).id;
         kept.digest = tests::digest_of_picture(*node, kept.id);
         node->jobs.stop();
-        flip_a_byte(node->blobs.path(Kind::result, kept.digest));
+        flip_a_byte(node->blobs.path(Kind::result, tests::blob_of(*node->store, kept.id)));
     }
     const auto node = open();
     expect_again(*node, kept.id);

@@ -157,10 +157,11 @@ TEST_P(ResultRoom, KeepsAnExpiredPictureForWhoJoinedWhileItWasLetGo)
     const api::JobView joined = submit(*node, job(0));
     EXPECT_EQ(joined.state, JobState::succeeded);
     const std::string digest = tests::digest_of_picture(*node, joined.id);
-    EXPECT_TRUE(node->store->expire_results({digest}, chosen).empty());
+    const std::string blob = tests::blob_of(*node->store, joined.id);
+    EXPECT_TRUE(node->store->expire_results({blob}, chosen).empty());
     // And after it is let go for good, the same job renders again to the same bytes.
-    EXPECT_EQ(node->store->expire_results({digest}, node->store->newest()).size(), 1U);
-    node->blobs.remove(Kind::result, digest);
+    EXPECT_EQ(node->store->expire_results({blob}, node->store->newest()).size(), 1U);
+    node->blobs.remove(Kind::result, blob);
     EXPECT_EQ(tests::image_refusal(*node, first).code, "expired");
     EXPECT_EQ(tests::digest_of_picture(*node, tests::succeeded(*node, submit(*node, job(0)).id).id), digest);
 }

@@ -89,7 +89,7 @@ TEST_P(SharedRender, OutlivesTheJobThatMadeIt)
     const std::string digest = tests::digest_of_picture(*node, first.id);
     EXPECT_TRUE(tests::removed(*node, first.id));
     EXPECT_EQ(tests::digest_of_picture(*node, second.id), digest);
-    EXPECT_TRUE(node->blobs.has(server::BlobStore::Kind::result, digest));
+    EXPECT_TRUE(node->blobs.has(server::BlobStore::Kind::result, tests::blob_of(*node->store, second.id)));
 }
 
 TEST_P(SharedRender, GoesOnWhenTheFirstIsCanceled)
