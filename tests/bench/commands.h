@@ -13,6 +13,7 @@ void add_leaks(CLI::App& app);
 void add_memory(CLI::App& app);
 void add_rays(CLI::App& app);
 void add_service(CLI::App& app);
+void add_sky(CLI::App& app);
 void add_terrain(CLI::App& app);
 void add_tiles(CLI::App& app);
 

@@ -15,6 +15,7 @@ int main(int argc, char** argv)
     bench::add_memory(app);
     bench::add_rays(app);
     bench::add_service(app);
+    bench::add_sky(app);
     bench::add_terrain(app);
     bench::add_tiles(app);
     try {

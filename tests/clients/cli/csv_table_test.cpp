@@ -37,8 +37,10 @@ TEST(CsvTable, PassesColumnsThroughAndAddsItsOwn)
 TEST(CsvTable, NamesTheLineOfWhatIsWrong)
 {
     const CsvTable table("t.csv", "# about\na,b\n1,two\nnan,4\n");
-    EXPECT_EQ(error_of([&] { static_cast<void>(table.number(0, "b")); }), "t.csv:3: b: \"two\" is not a number");
-    EXPECT_EQ(error_of([&] { static_cast<void>(table.number(1, "a")); }), "t.csv:4: a: \"nan\" is not a number");
+    EXPECT_EQ(error_of([&] { static_cast<void>(table.number(0, "b")); }),
+              "t.csv:3: b: \"two\" is not a number");
+    EXPECT_EQ(error_of([&] { static_cast<void>(table.number(1, "a")); }),
+              "t.csv:4: a: \"nan\" is not a number");
     EXPECT_EQ(error_of([&] { static_cast<void>(table.column("c")); }),
               "t.csv: there is no column c; there are: a, b");
     EXPECT_EQ(error_of([] { CsvTable("t.csv", "a\n1,2\n"); }), "t.csv:2: 2 cells under 1 columns");

@@ -85,8 +85,10 @@ TEST_F(SkyCommands, TakeOtherWavelengthsByThePresetsLaws)
 TEST_F(SkyCommands, NameTheLineOfARowThatIsWrong)
 {
     const std::string head = "lambda_nm,altitude_m,sun_zenith_deg,view_zenith_deg,az_deg\n680,0,0,0,0\n";
-    EXPECT_EQ(error_of(questions(kSingle, head + "680,0,x,0,0\n")), "in.csv:3: sun_zenith_deg: \"x\" is not a number");
-    EXPECT_EQ(error_of(questions(kSingle, head + "680,0,0,181,0\n")), "in.csv:3: view_zenith_deg: not in [0, 180]");
+    EXPECT_EQ(error_of(questions(kSingle, head + "680,0,x,0,0\n")),
+              "in.csv:3: sun_zenith_deg: \"x\" is not a number");
+    EXPECT_EQ(error_of(questions(kSingle, head + "680,0,0,181,0\n")),
+              "in.csv:3: view_zenith_deg: not in [0, 180]");
     EXPECT_EQ(error_of(questions(kSingle, "altitude_m\n0\n")),
               "in.csv: there is no column lambda_nm; there are: altitude_m");
     EXPECT_NE(error_of(questions(R"({"type": "atmosphere", "mie": {"g": 1}})", head)).find("/mie/g"),
