@@ -34,11 +34,10 @@ double sunlight(double nm)
     return 1 / (um5 * (exp(14387.77 / (um * 5778)) - 1));
 }
 
-} // namespace
-
-SkyColor::SkyColor(const std::vector<double>& wavelengths_nm, Rgb irradiance)
-    : weight_(wavelengths_nm.size()), irradiance_(irradiance)
+// One a wavelength; each channel sums to 1.
+std::vector<std::array<double, 3>> weights_of(const std::vector<double>& wavelengths_nm)
 {
+    std::vector<std::array<double, 3>> weights(wavelengths_nm.size());
     const std::size_t n = wavelengths_nm.size();
     if (n == 3) {
         std::array<std::size_t, 3> order{0, 1, 2};
@@ -46,18 +45,46 @@ SkyColor::SkyColor(const std::vector<double>& wavelengths_nm, Rgb irradiance)
             return wavelengths_nm[a] > wavelengths_nm[b];
         });
         for (std::size_t c = 0; c < 3; ++c)
-            weight_[order[c]][c] = 1;
-        return;
+            weights[order[c]][c] = 1;
+        return weights;
     }
     std::array<double, 3> sum{};
     for (std::size_t w = 0; w < n; ++w) {
-        weight_[w] = rec709_of(wavelengths_nm[w]);
+        weights[w] = rec709_of(wavelengths_nm[w]);
         for (std::size_t c = 0; c < 3; ++c)
-            sum[c] += weight_[w][c] *= sunlight(wavelengths_nm[w]);
+            sum[c] += weights[w][c] *= sunlight(wavelengths_nm[w]);
     }
-    for (auto& weight : weight_)
+    for (auto& weight : weights)
         for (std::size_t c = 0; c < 3; ++c)
             weight[c] = sum[c] > 0 ? weight[c] / sum[c] : 1 / static_cast<double>(n);
+    return weights;
+}
+
+} // namespace
+
+SkyColor::SkyColor(const std::vector<double>& wavelengths_nm, Rgb irradiance)
+    : weight_(weights_of(wavelengths_nm)), lanes_(lane_groups(weight_.size())), irradiance_(irradiance)
+{
+    for (std::size_t w = 0; w < weight_.size(); ++w) {
+        const Rgb channels{static_cast<float>(weight_[w][0]),
+                           static_cast<float>(weight_[w][1]),
+                           static_cast<float>(weight_[w][2])};
+        const Rgb all = channels * irradiance;
+        auto& lanes = lanes_[w / kLanes];
+        lanes[0][w % kLanes] = all.r;
+        lanes[1][w % kLanes] = all.g;
+        lanes[2][w % kLanes] = all.b;
+    }
+}
+
+Rgb SkyColor::of_lanes(const Lanes* groups) const
+{
+    Lanes sum[3]{};
+    for (std::size_t g = 0; g < lanes_.size(); ++g)
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[c] += groups[g] * lanes_[g][c];
+    const auto total = [](Lanes x) { return std::max(0.0f, (x[0] + x[1]) + (x[2] + x[3])); };
+    return {total(sum[0]), total(sum[1]), total(sum[2])};
 }
 
 Rgb SkyColor::share(const Spectrum& spectrum) const

@@ -10,6 +10,7 @@
 
 #include "renderer/color/rgb.h"
 #include "renderer/sky/air.h"
+#include "renderer/sky/lanes.h"
 
 #include <array>
 #include <vector>
@@ -23,11 +24,14 @@ public:
 
     // From L / E0 (or E / E0) at each wavelength.
     [[nodiscard]] Rgb operator()(const Spectrum& spectrum) const;
+    // The same of groups of wavelengths as look-ups give them: no double, no bounds.
+    [[nodiscard]] Rgb of_lanes(const Lanes* groups) const;
     // A share that is taken or left, without the irradiance: of white, white is left.
     [[nodiscard]] Rgb share(const Spectrum& spectrum) const;
 
 private:
     std::vector<std::array<double, 3>> weight_; // one a wavelength; each channel sums to 1
+    std::vector<std::array<Lanes, 3>> lanes_;   // the same times the irradiance, [group]
     Rgb irradiance_;
 };
 

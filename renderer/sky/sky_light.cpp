@@ -7,6 +7,7 @@
 #include "renderer/sky/sky_sun.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace renderer {
@@ -140,14 +141,11 @@ SkyPanorama SkyLight::panorama(std::size_t width, std::size_t height, ThreadPool
         SkyView::Row row;
         view_.row(sin_cos_deg(90 - 180 * (static_cast<double>(y) + 0.5) / static_cast<double>(height)).first,
                   row);
-        Spectrum spectrum{};
+        std::array<Lanes, lane_groups(kMostWavelengths)> light{};
         for (std::size_t x = 0; x < width; ++x) {
-            for (std::size_t g = 0; g < groups; ++g) {
-                const Lanes value = row.radiance(g, azimuth[x]);
-                for (std::size_t lane = 0; lane < kLanes; ++lane)
-                    spectrum[g * kLanes + lane] = static_cast<double>(value[lane]);
-            }
-            picture.pixels[y * width + x] = color_(spectrum);
+            for (std::size_t g = 0; g < groups; ++g)
+                light[g] = row.radiance(g, azimuth[x]);
+            picture.pixels[y * width + x] = color_.of_lanes(light.data());
         }
     });
     return picture;
