@@ -27,6 +27,15 @@ Json mesh_json(const AssetInfo::MeshInfo& mesh)
             {"has_uvs", mesh.has_uvs}};
 }
 
+Json image_json(const AssetInfo::ImageInfo& image)
+{
+    return {{"format", image.format},
+            {"width", image.width},
+            {"height", image.height},
+            {"channels", image.channels},
+            {"bits", image.bits}};
+}
+
 } // namespace
 
 std::string write_asset(const std::string& digest, std::uint64_t bytes)
@@ -38,6 +47,7 @@ std::string write_asset_info(const AssetInfo& info)
 {
     Json json = asset_json(info.digest, info.bytes);
     if (info.mesh) json["mesh"] = mesh_json(*info.mesh);
+    if (info.image) json["image"] = image_json(*info.image);
     if (info.fault) json["fault"] = fault_json(*info.fault);
     return text_of(json, true);
 }

@@ -43,6 +43,7 @@ Json models_json()
 Json formats_json()
 {
     return {{"meshes", names_of(mesh_format_words())},
+            {"textures", names_of(texture_format_words())},
             {"images", names_of(image_format_words())},
             {"tones", names_of(words_for<renderer::Tone>())}};
 }

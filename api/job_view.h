@@ -78,6 +78,14 @@ struct AssetInfo {
         bool has_normals = false, has_uvs = false;
     };
     std::optional<MeshInfo> mesh;
+    // Engaged where they are a picture.
+    struct ImageInfo {
+        std::string format; // its name in image_formats.h
+        std::uint32_t width = 0, height = 0;
+        std::uint32_t channels = 0; // 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA
+        std::uint32_t bits = 0;     // of a channel; 32: floats
+    };
+    std::optional<ImageInfo> image;
     std::optional<Problem> fault; // why it does not import
 };
 std::string write_asset(const std::string& digest, std::uint64_t bytes);

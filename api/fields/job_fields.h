@@ -8,7 +8,8 @@
 //
 // A visitor has: number, integer, boolean, word, only, point, direction, color, textured_number,
 // textured_color, extents, object, group, kinds, list, table, unbuilt, needs, exclude, only_when, and the few
-// below that stand for one place alone: aim, sun_angles, geometry, material_of, metal_of, placement, files, labels, fail_on.
+// below that stand for one place alone: aim, sun_angles, geometry, image_of, material_of, metal_of, placement,
+// files, labels, fail_on.
 #pragma once
 
 #include "api/fields/camera_fields.h"
@@ -16,6 +17,7 @@
 #include "api/fields/material_fields.h"
 #include "api/fields/ranges.h"
 #include "api/fields/sees.h"
+#include "api/fields/texture_fields.h"
 #include "api/job_request.h"
 #include "api/words/word_table.h"
 #include "renderer/description/scene_description.h"

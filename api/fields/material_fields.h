@@ -11,7 +11,9 @@ template <typename V, Sees<renderer::SurfaceOptions> X>
 void surface_fields(V& v, X& surface)
 {
     v.boolean("two_sided", surface.two_sided, "false: from behind it is black");
-    v.unbuilt({"normal_map"}, "leave it out");
+    v.object("normal_map",
+             surface.normal_map,
+             "tilts the normals: red is right, green up, blue out of the surface, 1/2 is none");
 }
 
 template <typename V, Sees<renderer::DiffuseMaterial> X>
@@ -64,7 +66,7 @@ void fields(V& v, X& material)
             "1/m: exp(-absorption * way) is left of light within");
     v.integer(
         "priority", material.priority, kGlassPriority, "where bodies overlap the highest fills the place");
-    v.unbuilt({"normal_map"}, "leave it out");
+    v.object("normal_map", material.normal_map, "tilts the normals, as of other materials");
 }
 
 template <typename V, Sees<renderer::ConductorMaterial> X>

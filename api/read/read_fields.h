@@ -30,10 +30,11 @@ namespace api {
 // What one reading shares between its objects.
 struct ReadState {
     const ReadContext& context;
-    JobRequest& job; // files and meshes, as far as they are read
+    JobRequest& job; // files, meshes and images, as far as they are read
     FaultList faults{};
     std::unordered_map<std::string, std::uint32_t> materials{}; // name -> index
     std::unordered_map<std::string, std::uint32_t> meshes{};    // name -> index
+    std::unordered_map<std::string, std::uint32_t> images{};    // name -> index
     std::vector<std::string> material_names{};
     bool materials_unreadable = false; // then no reference to one is a fault of its own
     bool files_unreadable = false;
@@ -53,14 +54,15 @@ public:
     bool direction(const char* name, renderer::Vec3d& value, const char* doc);
     void color(const char* name, renderer::Rgb& value, const Range& range, const char* doc);
     void color(const char* name, std::optional<renderer::Rgb>& value, const Range& range, const char* doc);
+    // Either the value or an object that says which picture gives it.
     void textured_color(const char* name, renderer::TexturedColor& value, const Range& range, const char* doc)
     {
-        color(name, value.value, range, doc);
+        if (!texture(name, value.texture)) color(name, value.value, range, doc);
     }
     void
     textured_number(const char* name, renderer::TexturedNumber& value, const Range& range, const char* doc)
     {
-        number(name, value.value, range, doc);
+        if (!texture(name, value.texture)) number(name, value.value, range, doc);
     }
 
     template <std::integral T>
@@ -75,6 +77,11 @@ public:
     }
     template <typename E>
     void word(const char* name, E& value, const char*)
+    {
+        if (const Word* word = chosen(name, words_for<E>(), nullptr)) value = static_cast<E>(word->value);
+    }
+    template <typename E>
+    void word(const char* name, std::optional<E>& value, const char*)
     {
         if (const Word* word = chosen(name, words_for<E>(), nullptr)) value = static_cast<E>(word->value);
     }
@@ -142,6 +149,7 @@ public:
     void aim(renderer::CameraDescription& camera);
     void sun_angles(renderer::Vec3d& travels); // instead of `direction`: where it stands
     void geometry(renderer::Shape& shape);
+    void image_of(std::uint32_t& image);
     void material_of(std::optional<std::uint32_t>& material);
     void metal_of(std::variant<renderer::Metal, renderer::ComplexIor>& ior);
     void placement(renderer::Affine3& world_from_object);
@@ -230,6 +238,8 @@ private:
     text_at(const Json& node, const std::string& pointer, std::size_t shortest, std::size_t longest);
     bool name_fits(const std::string& pointer, const std::string& name);
 
+    // False where the member is no object, so that it is a value or nothing.
+    bool texture(const char* name, std::optional<renderer::TextureUse>& use);
     void file(const std::string& name, const Json& value, std::map<std::string, std::string>& files);
     void mesh_of(renderer::MeshShape& shape);
     std::string digest_for(const std::string& name, const std::string& pointer);

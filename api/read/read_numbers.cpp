@@ -128,7 +128,7 @@ std::optional<std::uint64_t> ReadFields::whole(const char* name, const WholeRang
 std::optional<double> ReadFields::one_number(const Json& node, const std::string& pointer, const Range& range)
 {
     if (node.is_object() && node.contains("image")) {
-        fault(pointer, "unsupported", "textures are not available in this build; available: numbers");
+        fault(pointer, "unsupported", "no texture can stand here; available: a number");
         return std::nullopt;
     }
     if (!node.is_number()) {
@@ -147,7 +147,7 @@ bool ReadFields::read_numbers(const char* name, const Range& range, double* valu
     if (!node) return false;
     const std::string expected = "an array of " + std::to_string(count) + " numbers";
     if (node->is_object() && node->contains("image")) {
-        fault(at(name), "unsupported", "textures are not available in this build; available: " + expected);
+        fault(at(name), "unsupported", "no texture can stand here; available: " + expected);
         return false;
     }
     if (!node->is_array()) {

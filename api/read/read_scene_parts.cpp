@@ -137,6 +137,23 @@ void ReadFields::mesh_of(renderer::MeshShape& shape)
     if (is_new) state_.job.scene.meshes.push_back({*name, digest_for(*name, at("mesh"))});
 }
 
+bool ReadFields::texture(const char* name, std::optional<renderer::TextureUse>& use)
+{
+    if (!node_ || !node_->contains(name) || !node_->at(name).is_object()) return false;
+    read_object(*find(name), at(name), use.emplace());
+    return true;
+}
+
+void ReadFields::image_of(std::uint32_t& image)
+{
+    const std::string* name = text("image", kLongestName);
+    if (!name) return;
+    std::vector<renderer::ImageReference>& images = state_.job.scene.images;
+    const auto [found, is_new] = state_.images.emplace(*name, static_cast<std::uint32_t>(images.size()));
+    image = found->second;
+    if (is_new) images.push_back({*name, digest_for(*name, at("image")), at("image")});
+}
+
 // Empty where the name is a path of a local render, or a fault was told.
 std::string ReadFields::digest_for(const std::string& name, const std::string& pointer)
 {

@@ -117,6 +117,13 @@ void SchemaFields::geometry(const renderer::Shape& shape)
     std::visit([this](const auto& alternative) { fields(*this, alternative); }, shape);
 }
 
+void SchemaFields::image_of(std::uint32_t)
+{
+    put("image",
+        told(text_schema(1, kLongestName),
+             "name of a picture (of `files` or a multipart part), or a digest, sha256:..."));
+}
+
 void SchemaFields::material_of(const std::optional<std::uint32_t>&)
 {
     put("material",
@@ -240,6 +247,19 @@ Json SchemaFields::within(const Range& range)
     return {{"type", "number"},
             {range.without_min ? "exclusiveMinimum" : "minimum", range.min},
             {range.without_max ? "exclusiveMaximum" : "maximum", range.max}};
+}
+
+void SchemaFields::or_texture(const char* name)
+{
+    Json value = std::move(schema_["properties"][name]);
+    Json member = Json::object();
+    for (const char* said : {"description", "default"})
+        if (value.contains(said)) {
+            member[said] = std::move(value[said]);
+            value.erase(said);
+        }
+    member["oneOf"] = Json::array({std::move(value), schema_of(renderer::TextureUse{})});
+    put(name, std::move(member));
 }
 
 void SchemaFields::put(const char* name, Json member)

@@ -50,6 +50,11 @@ public:
         const WordTable words = words_for<E>();
         put(name, one_of(words, name_of(words, static_cast<int>(value)), doc));
     }
+    template <typename E>
+    void word(const char* name, const std::optional<E>&, const char* doc)
+    {
+        put(name, told({{"enum", names_of(words_for<E>())}}, doc));
+    }
     void only(const char* name, WordTable words, const char* doc);
     void point(const char* name, const renderer::Vec3d& value, const char* doc);
     void direction(const char* name, const renderer::Vec3d& value, const char* doc);
@@ -64,6 +69,7 @@ public:
                         const char* doc)
     {
         color(name, value.value, range, doc);
+        or_texture(name);
     }
     void textured_number(const char* name,
                          const renderer::TexturedNumber& value,
@@ -71,6 +77,7 @@ public:
                          const char* doc)
     {
         number(name, value.value, range, doc);
+        or_texture(name);
     }
     template <typename... D>
     void extents(const char* name, const char* doc, const D&... sizes)
@@ -121,6 +128,7 @@ public:
     void aim(const renderer::CameraDescription& camera);
     void sun_angles(const renderer::Vec3d& travels);
     void geometry(const renderer::Shape& shape);
+    void image_of(std::uint32_t image);
     void material_of(const std::optional<std::uint32_t>& material);
     void metal_of(const std::variant<renderer::Metal, renderer::ComplexIor>& ior);
     void placement(const renderer::Affine3& world_from_object);
@@ -159,6 +167,8 @@ private:
     static Json one_of(WordTable words, std::string_view standard, const char* doc);
     static Json within(const Range& range);
     void put(const char* name, Json member);
+    // What was put under `name` may be a texture instead.
+    void or_texture(const char* name);
 
     Json schema_;
 };

@@ -1,5 +1,6 @@
 #include "api/words/word_table.h"
 
+#include "renderer/description/image_formats.h"
 #include "renderer/description/mesh_formats.h"
 #include "renderer/description/picture_formats.h"
 
@@ -135,6 +136,31 @@ WordTable words_for<Tone>()
 }
 
 template <>
+WordTable words_for<renderer::TextureWrap>()
+{
+    static constexpr std::array words{enumerator("repeat", renderer::TextureWrap::repeat),
+                                      enumerator("clamp", renderer::TextureWrap::clamp),
+                                      enumerator("mirror", renderer::TextureWrap::mirror)};
+    return words;
+}
+
+template <>
+WordTable words_for<renderer::TextureFilter>()
+{
+    static constexpr std::array words{enumerator("linear", renderer::TextureFilter::linear),
+                                      enumerator("nearest", renderer::TextureFilter::nearest)};
+    return words;
+}
+
+template <>
+WordTable words_for<renderer::TextureEncoding>()
+{
+    static constexpr std::array words{enumerator("srgb", renderer::TextureEncoding::srgb),
+                                      enumerator("linear", renderer::TextureEncoding::linear)};
+    return words;
+}
+
+template <>
 WordTable words_for<BvhSplit>()
 {
     static constexpr std::array words{enumerator("sah", BvhSplit::sah),
@@ -189,6 +215,17 @@ WordTable mesh_format_words()
         std::array<Word, renderer::kMeshFormats.size()> all{};
         for (std::size_t i = 0; i < all.size(); ++i)
             all[i] = Word{renderer::kMeshFormats[i].name, static_cast<int>(i)};
+        return all;
+    }();
+    return words;
+}
+
+WordTable texture_format_words()
+{
+    static constexpr auto words = [] {
+        std::array<Word, renderer::kImageFormats.size()> all{};
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i] = Word{renderer::kImageFormats[i].name, static_cast<int>(i)};
         return all;
     }();
     return words;

@@ -100,6 +100,12 @@ WordTable words_for<renderer::MeterQuantity>();
 template <>
 WordTable words_for<renderer::Tone>();
 template <>
+WordTable words_for<renderer::TextureWrap>();
+template <>
+WordTable words_for<renderer::TextureFilter>();
+template <>
+WordTable words_for<renderer::TextureEncoding>();
+template <>
 WordTable words_for<renderer::BvhSplit>();
 template <>
 WordTable words_for<renderer::BvhWidth>();
@@ -111,6 +117,7 @@ WordTable fail_on_words();
 
 // What importer and encoder speak; held against them by tests.
 WordTable mesh_format_words();
+WordTable texture_format_words();
 WordTable image_format_words();
 
 const Word* find_word(WordTable words, std::string_view name);

@@ -24,7 +24,7 @@ namespace api {
 
 class WriteFields {
 public:
-    // `scene`: gives names to the indices of meshes and materials.
+    // `scene`: gives names to the indices of meshes, images and materials.
     WriteFields(Json& out, const renderer::SceneDescription& scene);
 
     void number(const char* name, double value, const Range&, const char*) { out_[name] = value; }
@@ -48,6 +48,11 @@ public:
     {
         out_[name] = name_of(words_for<E>(), static_cast<int>(value));
     }
+    template <typename E>
+    void word(const char* name, const std::optional<E>& value, const char* doc)
+    {
+        if (value) word(name, *value, doc);
+    }
     void only(const char* name, WordTable words, const char*) { out_[name] = name_of(words, 0); }
     void point(const char* name, const renderer::Vec3d& value, const char*);
     void direction(const char* name, const renderer::Vec3d& value, const char* doc)
@@ -65,14 +70,20 @@ public:
                         const Range& range,
                         const char* doc)
     {
-        color(name, value.value, range, doc);
+        if (value.texture)
+            out_[name] = written(*value.texture);
+        else
+            color(name, value.value, range, doc);
     }
     void textured_number(const char* name,
                          const renderer::TexturedNumber& value,
                          const Range& range,
                          const char* doc)
     {
-        number(name, value.value, range, doc);
+        if (value.texture)
+            out_[name] = written(*value.texture);
+        else
+            number(name, value.value, range, doc);
     }
     template <typename... D>
     void extents(const char* name, const char*, const D&... sizes)
@@ -126,6 +137,7 @@ public:
     void aim(const renderer::CameraDescription& camera);
     void sun_angles(const renderer::Vec3d&) {} // written as a direction
     void geometry(const renderer::Shape& shape);
+    void image_of(std::uint32_t image) { out_["image"] = scene_.images.at(image).name; }
     void material_of(const std::optional<std::uint32_t>& material);
     void metal_of(const std::variant<renderer::Metal, renderer::ComplexIor>& ior);
     void placement(const renderer::Affine3& world_from_object);

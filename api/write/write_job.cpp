@@ -91,8 +91,11 @@ std::string canonical_render_text(const JobRequest& request)
         json.erase(no_part_of_the_picture);
     std::sort(json["fail_on"].begin(), json["fail_on"].end());
     // Names stay beside digests: by them a mesh finds its MTL, and their endings may tell the format. Without
-    // a mesh no file is ever opened.
-    if (request.scene.meshes.empty()) json.erase("files");
+    // a mesh or a picture no file is ever opened.
+    if (request.scene.meshes.empty() && request.scene.images.empty()) json.erase("files");
+    Json& images = json["images"] = Json::object();
+    for (const renderer::ImageReference& image : request.scene.images)
+        images[image.name] = image.digest;
     Json& meshes = json["meshes"] = Json::object();
     for (const renderer::MeshReference& mesh : request.scene.meshes)
         meshes[mesh.name] = mesh.digest;

@@ -28,7 +28,13 @@ void add_digests(api::JobRequest& request, std::uint32_t mesh, const MeshFile& f
 
 LocalJob load_local_job(const JobSource& source, api::JobRequest request)
 {
-    LocalJob job{.request = std::move(request), .meshes = {}, .facts = {}, .assumed = {}, .notes = {}};
+    LocalJob job{.request = std::move(request),
+                 .meshes = {},
+                 .facts = {},
+                 .images = {},
+                 .image_facts = {},
+                 .assumed = {},
+                 .notes = {}};
     std::vector<api::Problem> faults;
     const auto count = static_cast<std::uint32_t>(job.request.scene.meshes.size());
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -44,11 +50,24 @@ LocalJob load_local_job(const JobSource& source, api::JobRequest request)
         job.facts.push_back(renderer::facts_of(file.imported.mesh));
         job.meshes.push_back(std::move(file.imported.mesh));
     }
+    for (renderer::ImageReference& image : job.request.scene.images) {
+        auto result = import_picture_file(image, source.folder);
+        if (auto* fault = std::get_if<api::Problem>(&result)) {
+            faults.push_back(std::move(*fault));
+            continue;
+        }
+        PictureFile& file = std::get<PictureFile>(result);
+        image.digest = file.digest;
+        job.request.files.emplace(image.name, file.digest);
+        job.images.push_back(std::make_shared<const renderer::Image>(std::move(file.image)));
+        job.image_facts.push_back(renderer::facts_of(*job.images.back()));
+    }
     if (!faults.empty()) refuse_faults(source.name, faults);
 
     job.assumed =
         renderer::assume_defaults(job.request.scene, job.facts, aspect_of(job.request.settings.image));
-    auto plan = renderer::make_plan(job.assumed, job.facts, job.request.settings, renderer::Limits::none());
+    auto plan = renderer::make_plan(
+        job.assumed, job.facts, job.request.settings, renderer::Limits::none(), job.image_facts);
     if (const auto* found = std::get_if<std::vector<renderer::Fault>>(&plan)) {
         for (const renderer::Fault& fault : *found)
             faults.push_back({fault.pointer, fault.code, fault.detail});

@@ -5,7 +5,9 @@
 #include "clients/cli/job_source.h"
 #include "renderer/geometry/mesh.h"
 #include "renderer/plan/plan.h"
+#include "renderer/textures/image.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ struct LocalJob {
     api::JobRequest request; // with the digests of the meshes, so that its render key is the service's
     std::vector<renderer::Mesh> meshes; // as request.scene.meshes
     std::vector<renderer::MeshFacts> facts;
+    std::vector<std::shared_ptr<const renderer::Image>> images; // as request.scene.images
+    std::vector<renderer::ImageFacts> image_facts;
     renderer::AssumedScene assumed;
     std::vector<std::string> notes; // of the importers, with the mesh's name
 };

@@ -39,21 +39,63 @@ std::string pointer_to_mesh(const renderer::SceneDescription& scene, std::uint32
     return "/scene/objects";
 }
 
+namespace {
+
 std::variant<std::filesystem::path, api::Problem>
-path_of_mesh(const api::JobRequest& request, std::uint32_t mesh, const std::filesystem::path& folder)
+path_of(const std::string& name, const std::string& pointer, const std::filesystem::path& folder)
 {
-    const std::string& name = request.scene.meshes[mesh].name;
     if (name.starts_with("sha256:"))
-        return api::Problem{pointer_to_mesh(request.scene, mesh),
+        return api::Problem{pointer,
                             "missing_asset",
                             name + " names an uploaded asset, which only a service has: name a file instead"};
     const std::filesystem::path path = folder / name;
     if (!std::filesystem::is_regular_file(path))
-        return api::Problem{pointer_to_mesh(request.scene, mesh),
+        return api::Problem{pointer,
                             "missing_file",
                             "there is no file " + path.string() +
                                 ": names are looked for from the scene's folder"};
     return path;
+}
+
+api::Problem digest_mismatch(const std::string& pointer,
+                             const std::filesystem::path& path,
+                             const std::string& found,
+                             const std::string& wanted)
+{
+    return {
+        pointer, "digest_mismatch", path.string() + " is " + found + ", but the job's files say " + wanted};
+}
+
+} // namespace
+
+std::variant<std::filesystem::path, api::Problem>
+path_of_mesh(const api::JobRequest& request, std::uint32_t mesh, const std::filesystem::path& folder)
+{
+    return path_of(request.scene.meshes[mesh].name, pointer_to_mesh(request.scene, mesh), folder);
+}
+
+std::variant<std::filesystem::path, api::Problem> path_of_picture(const renderer::ImageReference& image,
+                                                                  const std::filesystem::path& folder)
+{
+    return path_of(image.name, image.pointer, folder);
+}
+
+std::variant<PictureFile, api::Problem> import_picture_file(const renderer::ImageReference& image,
+                                                            const std::filesystem::path& folder)
+{
+    auto found = path_of_picture(image, folder);
+    if (auto* problem = std::get_if<api::Problem>(&found)) return std::move(*problem);
+    PictureFile out{.path = std::get<std::filesystem::path>(std::move(found)), .digest = {}, .image = {}};
+    const std::string bytes = read_file(out.path);
+    out.digest = digest_of(bytes);
+    if (!image.digest.empty() && image.digest != out.digest)
+        return digest_mismatch(image.pointer, out.path, out.digest, image.digest);
+    auto result = renderer::import_image(
+        out.path.filename().string(), std::as_bytes(std::span(bytes)), renderer::Limits::none());
+    if (const auto* fault = std::get_if<renderer::ImportFault>(&result))
+        return api::Problem{image.pointer, fault->code, out.path.string() + ": " + fault->detail};
+    out.image = std::move(std::get<renderer::ImportedImage>(result).image);
+    return out;
 }
 
 std::variant<MeshFile, api::Problem>
@@ -70,9 +112,7 @@ import_mesh_file(const api::JobRequest& request, std::uint32_t mesh, const std::
     const std::string& wanted = request.scene.meshes[mesh].digest;
     const std::string pointer = pointer_to_mesh(request.scene, mesh);
     if (!wanted.empty() && wanted != out.digest)
-        return api::Problem{pointer,
-                            "digest_mismatch",
-                            out.path.string() + " is " + out.digest + ", but the job's files say " + wanted};
+        return digest_mismatch(pointer, out.path, out.digest, wanted);
 
     FolderFiles companions(out.path.parent_path());
     auto result = renderer::import_mesh(

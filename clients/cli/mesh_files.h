@@ -1,4 +1,4 @@
-// MeshFiles: the meshes of a job, read from disk with the files that they name, imported and checked.
+// MeshFiles: the meshes and pictures of a job, read from disk with the files that they name, imported and checked.
 //
 // Errors  faults with the pointer of the object that first names the mesh; UserError(usage) for unreadable
 //         files.
@@ -6,6 +6,7 @@
 #pragma once
 
 #include "api/job_request.h"
+#include "renderer/io/import_image.h"
 #include "renderer/io/import_mesh.h"
 
 #include <filesystem>
@@ -48,5 +49,19 @@ path_of_mesh(const api::JobRequest& request, std::uint32_t mesh, const std::file
 // One mesh: read, digest compared with the job's `files` where they name it, imported.
 std::variant<MeshFile, api::Problem>
 import_mesh_file(const api::JobRequest& request, std::uint32_t mesh, const std::filesystem::path& folder);
+
+struct PictureFile {
+    std::filesystem::path path;
+    std::string digest;
+    renderer::Image image;
+};
+
+// One picture, likewise.
+std::variant<PictureFile, api::Problem> import_picture_file(const renderer::ImageReference& image,
+                                                            const std::filesystem::path& folder);
+
+// Where a picture of a local job lies, or the fault that it does not.
+std::variant<std::filesystem::path, api::Problem> path_of_picture(const renderer::ImageReference& image,
+                                                                  const std::filesystem::path& folder);
 
 } // namespace clients

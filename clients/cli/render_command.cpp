@@ -58,7 +58,7 @@ std::shared_ptr<const renderer::Scene> prepare_scene(LocalJob& job,
             renderer::prepare_mesh(std::move(mesh), mesh_tree(settings.acceleration), pool, stop));
         if (!prepared.back()) interrupted();
     }
-    return renderer::prepare(job.assumed, plan, prepared, settings, pool, stop);
+    return renderer::prepare(job.assumed, plan, prepared, settings, pool, stop, job.images);
 }
 
 renderer::RenderResult render_job(LocalJob& job, bool quiet, const std::stop_token& stop)

@@ -84,6 +84,17 @@ find_job_files(const api::JobRequest& request, const std::filesystem::path& fold
     for (std::uint32_t mesh = 0; mesh < request.scene.meshes.size(); ++mesh)
         for (api::Problem& fault : add_mesh(request, mesh, folder, files))
             faults.push_back(std::move(fault));
+    for (const renderer::ImageReference& image : request.scene.images) {
+        auto found = path_of_picture(image, folder);
+        if (auto* fault = std::get_if<api::Problem>(&found)) {
+            if (image.digest.empty() && !image.name.starts_with("sha256:"))
+                faults.push_back(std::move(*fault));
+            continue;
+        }
+        const auto& path = std::get<std::filesystem::path>(found);
+        if (auto fault = files.add({image.name, path, digest_of(read_file(path))}, image.pointer))
+            faults.push_back(*std::move(fault));
+    }
     if (!faults.empty()) return faults;
     return files.take();
 }

@@ -37,6 +37,9 @@ Camera::Camera(const CameraDescription& description, std::uint32_t width_px, std
           description.aim_is_direction ? 1 : length(description.aim - description.position)))
 {
     tan_x_ = tan_y_ * (width_ / height_);
+    if (projection_ == Projection::orthographic) half_pixel_ = tan_y_ / height_;
+    if (projection_ == Projection::perspective) half_pixel_per_metre_ = tan_y_ / height_;
+    if (projection_ == Projection::panorama) half_pixel_per_metre_ = kPi / 2 / height_;
 }
 
 Vec3d Camera::direction(double picture_x, double picture_y) const

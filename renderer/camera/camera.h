@@ -36,6 +36,10 @@ public:
     bool is_meter() const { return projection_ == Projection::meter; }
     MeterQuantity quantity() const { return quantity_; }
 
+    // How wide a sample's share of a surface is that lies `t` away and faces it, metres: half of its pixel's, over
+    // which the samples are spread already. Of a meter: nothing.
+    double width_at(double t) const { return half_pixel_ + t * half_pixel_per_metre_; }
+
     // Of a pinhole. The centre of the picture gives forward(), to the bit.
     Vec3d direction(double picture_x, double picture_y) const;
 
@@ -47,6 +51,7 @@ private:
     double width_, height_;
     double tan_y_, tan_x_; // of half the field of view; of parallel rays half the picture in metres
     double lens_radius_m_, focus_distance_m_;
+    double half_pixel_ = 0, half_pixel_per_metre_ = 0; // of parallel rays; of others, a metre away
 };
 
 } // namespace renderer

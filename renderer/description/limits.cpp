@@ -51,6 +51,11 @@ std::span<const LimitEntry> limit_table()
                    "triangles of all objects where `acceleration` asks for no trees",
                    1ull << 40},
         LimitEntry{"objects", &Limits::objects, "", "objects in a scene", 1ull << 31},
+        LimitEntry{"texture_pixels",
+                   &Limits::texture_pixels,
+                   "pixels",
+                   "largest picture that is read, as a texture or an environment",
+                   1ull << 32},
         LimitEntry{"render_memory_bytes",
                    &Limits::render_memory_bytes,
                    "bytes",
@@ -97,6 +102,7 @@ Limits Limits::none()
     limits.image_pixels = 1ull << 32;
     limits.samples = 1ull << 31;
     limits.triangles = (1ull << 32) - 2; // indices are 32-bit
+    limits.texture_pixels = 1ull << 32;
     limits.listed_triangles = 1ull << 40;
     limits.render_memory_bytes = physical_memory_bytes();
     return limits;

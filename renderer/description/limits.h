@@ -20,6 +20,7 @@ struct Limits {
     std::uint64_t triangles = 50'000'000;
     std::uint64_t listed_triangles = 16'000'000; // 16 rays against all of them take a second or so
     std::uint64_t objects = 100'000;
+    std::uint64_t texture_pixels = 64'000'000;
     std::uint64_t render_memory_bytes = 8ull << 30;
     std::uint64_t queue_jobs = 1000;
     std::uint64_t wait_s = 60;

@@ -62,11 +62,20 @@ struct MeshReference {
     friend bool operator==(const MeshReference&, const MeshReference&) = default;
 };
 
+// A picture that materials or the environment name, resolved likewise.
+struct ImageReference {
+    std::string name;
+    std::string digest;
+    std::string pointer; // to the member that names it first: what faults of the picture are told with
+    friend bool operator==(const ImageReference&, const ImageReference&) = default;
+};
+
 struct SceneDescription {
     std::optional<CameraDescription> camera; // nothing: framed from the bounds, see plan/plan.h
     std::optional<Environment> environment;  // nothing: none, or assumed where nothing else shines
     std::vector<NamedMaterial> materials;
-    std::vector<MeshReference> meshes; // each name once
+    std::vector<MeshReference> meshes;  // each name once
+    std::vector<ImageReference> images; // each name once
     std::vector<ObjectDescription> objects;
     std::vector<Light> lights;
     TransportDescription transport;

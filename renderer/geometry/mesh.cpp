@@ -34,6 +34,8 @@ std::uint64_t Mesh::size_bytes() const
     }
     for (const MeshPart& part : parts)
         sum += part.name.capacity();
+    for (const MeshImage& named : images)
+        sum += sizeof named + named.name.capacity() + bytes(named.image.bytes);
     return sum;
 }
 

@@ -7,12 +7,15 @@
 #pragma once
 
 #include "renderer/color/rgb.h"
-#include "renderer/geometry/array.h"
+#include "renderer/description/texture.h"
+#include "renderer/math/array.h"
 #include "renderer/math/bounds.h"
+#include "renderer/textures/image.h"
 
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +34,25 @@ struct MeshMaterial {
     bool is_transparent = false;
     bool is_metal = false;
     bool has_roughness = false; // a physically based one, which is less than 1
+
+    // glTF's model: `diffuse` is the base colour, and these count instead of specular and shininess.
+    bool is_physical = false;
+    float metallic = 0, roughness = 1, transmission = 0;
+    float ior = 1.5f;
+    float opacity = 1;
+    float cutoff = 0; // where alpha is below it there is nothing; 0: alpha makes no holes
+    Rgb emission{};   // radiance
+    bool two_sided = true;
+    // Pictures, by their number in Mesh::images; each is multiplied by the value above. Alpha is the colour's,
+    // or has a picture of its own; roughness is the green of its picture, metallic the blue.
+    std::optional<TextureUse> color_map{}, specular_map{}, alpha_map{}, physical_map{}, emission_map{},
+        normal_map{};
+};
+
+// A picture that materials of the mesh use: embedded, or a file that came along.
+struct MeshImage {
+    std::string name;
+    Image image;
 };
 
 // A named node of the file: a run of triangles.
@@ -52,6 +74,7 @@ struct Mesh {
     Array<std::uint16_t> triangle_materials; // one a triangle; or none: all material 0
     std::vector<MeshMaterial> materials;     // may be empty
     std::vector<MeshPart> parts;             // may be empty
+    std::vector<MeshImage> images;           // may be empty
 
     // As exactly as it is known: 48 bits where there are residuals.
     Vec3d position(std::uint32_t vertex) const

@@ -104,17 +104,48 @@ Found check_triangles(const Mesh& mesh)
     return std::nullopt;
 }
 
+Found check_pictures(const Mesh& mesh)
+{
+    for (const MeshMaterial& m : mesh.materials)
+        for (const auto* const map :
+             {&m.color_map, &m.specular_map, &m.alpha_map, &m.physical_map, &m.emission_map, &m.normal_map})
+            if (*map && ((*map)->image >= mesh.images.size() || (*map)->channel > 3))
+                return Fault{"",
+                             "index_out_of_range",
+                             "material \"" + m.name + "\" names picture " + text((*map)->image) +
+                                 ", but the mesh has " + text(mesh.images.size()) + " (counted from 0)"};
+    for (const MeshImage& named : mesh.images)
+        if (const auto bad = validate_image(named.image))
+            return Fault{"", "inconsistent", "picture \"" + named.name + "\": " + *bad};
+    return std::nullopt;
+}
+
 Found check_materials_and_parts(const Mesh& mesh)
 {
     for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
         const MeshMaterial& m = mesh.materials[i];
-        for (const float value :
-             {m.diffuse.r, m.diffuse.g, m.diffuse.b, m.specular.r, m.specular.g, m.specular.b, m.shininess})
+        for (const float value : {m.diffuse.r,
+                                  m.diffuse.g,
+                                  m.diffuse.b,
+                                  m.specular.r,
+                                  m.specular.g,
+                                  m.specular.b,
+                                  m.shininess,
+                                  m.metallic,
+                                  m.roughness,
+                                  m.transmission,
+                                  m.ior,
+                                  m.opacity,
+                                  m.cutoff,
+                                  m.emission.r,
+                                  m.emission.g,
+                                  m.emission.b})
             if (!std::isfinite(value))
                 return Fault{"",
                              "non_finite",
                              "material " + text(i) + " (\"" + m.name + "\") has a value that is not finite"};
     }
+    if (Found f = check_pictures(mesh)) return f;
     for (const MeshPart& part : mesh.parts)
         if (part.triangle_count == 0 || part.first_triangle >= mesh.triangles.size() ||
             part.triangle_count > mesh.triangles.size() - part.first_triangle)

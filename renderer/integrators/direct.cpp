@@ -15,9 +15,10 @@ void direct_radiance(const Scene& scene,
     for (std::size_t i = 0; i < samples.size(); ++i)
         rays[i] = samples[i].ray;
     tally.camera_rays += samples.size();
-    const std::uint64_t seen = scene.tree().closest_hits({rays, samples.size()}, hits, RayKind::camera);
+    const std::uint64_t seen = scene.closest_hits({rays, samples.size()}, hits, RayKind::camera);
 
     Surface surfaces[kMostSamples];
+    BsdfRoom rooms[kMostSamples];
     LitPoint points[kMostSamples];
     Rgb found[kMostSamples];
     std::size_t of_point[kMostSamples], count = 0;
@@ -25,7 +26,8 @@ void direct_radiance(const Scene& scene,
         radiance[i] = scene.environment();
         if ((seen >> i & 1) == 0) continue;
         const Vec3d toward_viewer = -rays[i].direction;
-        surfaces[count] = scene.surface_at(hits[i], toward_viewer);
+        surfaces[count] =
+            scene.surface_at(hits[i], toward_viewer, &rooms[count], scene.camera().width_at(hits[i].t));
         const Vec3f wo = surfaces[count].shading.to_local(to_float(toward_viewer));
         points[count] = {&surfaces[count], wo, &samples[i], 0};
         found[count] = surfaces[count].bsdf->ambient;

@@ -37,6 +37,7 @@ struct Turn {
     Path* path;
     const SceneHit* hit;
     Surface surface;
+    BsdfRoom room; // of its material where a picture gives it
     Vec3f wo;
     Bsdf glass;  // of a boundary: with its eta; surface.bsdf points here
     bool passes; // unbent, since it is no boundary where it is met
@@ -89,7 +90,7 @@ private:
         for (std::size_t i = 0; i < count_; ++i)
             rays_[i] = paths_[i].ray;
         (kind == RayKind::camera ? tally_.camera_rays : tally_.bounce_rays) += count_;
-        const std::uint64_t met = scene_.tree().closest_hits({rays_, count_}, hits_, kind);
+        const std::uint64_t met = scene_.closest_hits({rays_, count_}, hits_, kind);
         turns_ = 0;
         for (std::size_t i = 0; i < count_; ++i)
             if ((met >> i & 1) != 0)
@@ -105,7 +106,9 @@ private:
     {
         const Vec3d toward_viewer = -path.ray.direction;
         Turn& turn = turn_[turns_];
-        turn.surface = scene_.surface_at(hit, toward_viewer);
+        // What is seen after a bounce is not filtered: scattering has spread it over the samples.
+        const double width = path.depth == 0 ? scene_.camera().width_at(hit.t) : 0;
+        turn.surface = scene_.surface_at(hit, toward_viewer, &turn.room, width);
         if (path.media.here() != nullptr) path.weight = path.weight * transmittance(path.media, hit.t);
         const Bsdf& bsdf = *turn.surface.bsdf;
         if (!is_black(bsdf.emission)) {

@@ -15,9 +15,14 @@ look(const Scene& scene, std::span<const CameraSample> samples, Surface* surface
     for (std::size_t i = 0; i < samples.size(); ++i)
         rays[i] = samples[i].ray;
     tally.camera_rays += samples.size();
-    const std::uint64_t met = scene.tree().closest_hits({rays, samples.size()}, hits, RayKind::camera);
-    for (std::size_t i = 0; i < samples.size(); ++i)
-        if ((met >> i & 1) != 0) surfaces[i] = scene.surface_at(hits[i], -rays[i].direction);
+    const std::uint64_t met = scene.closest_hits({rays, samples.size()}, hits, RayKind::camera);
+    BsdfRoom room; // normals alone are looked at
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if ((met >> i & 1) == 0) continue;
+        surfaces[i] =
+            scene.surface_at(hits[i], -rays[i].direction, &room, scene.camera().width_at(hits[i].t));
+        surfaces[i].bsdf = nullptr;
+    }
     return met;
 }
 
@@ -46,7 +51,7 @@ void occlusion_radiance(const Scene& scene,
     }
     if (count == 0 || stop.stop_requested()) return;
     tally.shadow_rays += count;
-    const std::uint64_t shut = scene.tree().any_hits({rays, count});
+    const std::uint64_t shut = scene.any_hits({rays, count});
     for (std::size_t i = 0; i < count; ++i)
         if ((shut >> i & 1) == 0) radiance[of_ray[i]] = {1, 1, 1};
 }

@@ -66,7 +66,7 @@ private:
         for (std::size_t i = 0; i < count; ++i)
             rays_[i] = branches_[i].ray;
         (kind == RayKind::camera ? tally_.camera_rays : tally_.bounce_rays) += count;
-        const std::uint64_t met = scene_.tree().closest_hits({rays_, count}, hits_, kind);
+        const std::uint64_t met = scene_.closest_hits({rays_, count}, hits_, kind);
         std::size_t lit = 0;
         for (std::size_t i = 0; i < count; ++i) {
             found_[i] = {};
@@ -93,7 +93,9 @@ private:
         Branch& branch = branches_[i];
         const SceneHit& hit = hits_[i];
         const Vec3d toward_viewer = -branch.ray.direction;
-        Surface& surface = surfaces_[i] = scene_.surface_at(hit, toward_viewer);
+        // What is seen in mirrors and through panes is not filtered.
+        const double width = branch.depth == 0 ? scene_.camera().width_at(hit.t) : 0;
+        Surface& surface = surfaces_[i] = scene_.surface_at(hit, toward_viewer, &rooms_[i], width);
         if (branch.media.here() != nullptr)
             branch.weight = branch.weight * transmittance(branch.media, hit.t);
         found_[i] = surface.bsdf->emission + surface.bsdf->ambient;
@@ -153,6 +155,7 @@ private:
     Ray rays_[kMostSamples];
     SceneHit hits_[kMostSamples];
     Surface surfaces_[kMostSamples];
+    BsdfRoom rooms_[kMostSamples]; // of materials where pictures give them
     Vec3f wo_[kMostSamples];
     Bsdf glass_[kMostSamples]; // with the eta of its boundary
     Rgb found_[kMostSamples], added_[kMostSamples];

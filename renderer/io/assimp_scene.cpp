@@ -173,7 +173,7 @@ ImportResult read_with_assimp(const AssimpReader& reader,
         result.notes.push_back(told);
     }
     if (!scene->mRootNode) return ImportFault{"no_triangles", "the " + reader.title + " has no nodes"};
-    if (auto bad = flatten_scene(*scene, limits, result)) return std::move(*bad);
+    if (auto bad = flatten_scene(*scene, files, limits, result)) return std::move(*bad);
     return result;
 }
 

@@ -3,11 +3,11 @@
 #include "renderer/geometry/mesh_frame.h"
 #include "renderer/io/import_bounds.h"
 #include "renderer/io/scene_frame.h"
+#include "renderer/io/scene_material.h"
 #include "renderer/io/text.h"
 #include "renderer/io/triangulate.h"
 #include "renderer/math/affine.h"
 
-#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
@@ -34,35 +34,6 @@ Affine3 affine(const aiMatrix4x4& m)
     return out;
 }
 
-float factor_of(const aiMaterial& from, float otherwise, const char* key, unsigned type, unsigned index)
-{
-    ai_real value = otherwise;
-    return from.Get(key, type, index, value) == AI_SUCCESS ? value : otherwise;
-}
-
-// glTF ignores alpha unless alphaMode says otherwise; many files say BLEND of what is wholly opaque.
-bool is_transparent(const aiMaterial& from)
-{
-    if (factor_of(from, 0, AI_MATKEY_TRANSMISSION_FACTOR) > 0) return true;
-    aiString mode;
-    if (from.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != AI_SUCCESS)
-        return factor_of(from, 1, AI_MATKEY_OPACITY) < 1; // of other formats
-    if (std::string_view(mode.C_Str()) == "OPAQUE") return false;
-    return factor_of(from, 1, AI_MATKEY_OPACITY) < 1 || from.GetTextureCount(aiTextureType_BASE_COLOR) > 0 ||
-           from.GetTextureCount(aiTextureType_DIFFUSE) > 0;
-}
-
-// What is not modelled, to be told.
-void take_left_out(const aiMaterial& from, MeshMaterial& to)
-{
-    aiColor4D light;
-    to.emits = from.Get(AI_MATKEY_COLOR_EMISSIVE, light) == AI_SUCCESS &&
-               (light.r > 0 || light.g > 0 || light.b > 0);
-    to.is_transparent = is_transparent(from);
-    to.is_metal = factor_of(from, 0, AI_MATKEY_METALLIC_FACTOR) > 0;
-    to.has_roughness = factor_of(from, 1, AI_MATKEY_ROUGHNESS_FACTOR) < 1;
-}
-
 // One of assimp's meshes, made ready once, placed as often as nodes name it.
 struct Piece {
     std::vector<Vec3f> positions, normals;
@@ -73,8 +44,9 @@ struct Piece {
 
 class Flattener {
 public:
-    Flattener(const aiScene& scene, const Limits& limits, ImportedMesh& result)
-        : scene_(scene), limits_(limits), result_(result), pieces_(scene.mNumMeshes)
+    Flattener(const aiScene& scene, CompanionFiles& files, const Limits& limits, ImportedMesh& result)
+        : scene_(scene), images_(files, limits, result), limits_(limits), result_(result),
+          pieces_(scene.mNumMeshes)
     {
     }
     std::optional<ImportFault> run();
@@ -90,6 +62,7 @@ private:
     void place(const Piece& piece, const Affine3& world_from_object, unsigned material);
 
     const aiScene& scene_;
+    MeshImages images_;
     const Limits& limits_;
     ImportedMesh& result_;
     std::vector<Piece> pieces_;
@@ -191,22 +164,7 @@ void Flattener::materials()
         MeshMaterial& to = result_.mesh.materials.emplace_back();
         to.name = clean_utf8(const_cast<aiMaterial&>(from).GetName().C_Str());
         if (is_assimps_own(i) && !is_gltf()) continue; // grey, as any without a colour
-        aiColor4D color;
-        if (from.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS ||
-            from.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS)
-            to.diffuse = {std::clamp(color.r, 0.0f, 1.0f),
-                          std::clamp(color.g, 0.0f, 1.0f),
-                          std::clamp(color.b, 0.0f, 1.0f)};
-        if (!is_assimps_own(i)) take_left_out(from, to); // of its own it would be metal
-        for (int type = aiTextureType_NONE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
-            aiString name;
-            if (from.GetTexture(static_cast<aiTextureType>(type), 0, &name) != AI_SUCCESS) continue;
-            const std::string clean = name.C_Str()[0] == '*'
-                                          ? "embedded image " + clean_utf8(name.C_Str() + 1)
-                                          : clean_utf8(name.C_Str());
-            if (std::find(to.textures.begin(), to.textures.end(), clean) == to.textures.end())
-                to.textures.push_back(clean);
-        }
+        read_scene_material(from, scene_, is_assimps_own(i), images_, to);
     }
 }
 
@@ -289,9 +247,10 @@ std::optional<ImportFault> Flattener::run()
 
 } // namespace
 
-std::optional<ImportFault> flatten_scene(const aiScene& scene, const Limits& limits, ImportedMesh& result)
+std::optional<ImportFault>
+flatten_scene(const aiScene& scene, CompanionFiles& files, const Limits& limits, ImportedMesh& result)
 {
-    return Flattener(scene, limits, result).run();
+    return Flattener(scene, files, limits, result).run();
 }
 
 } // namespace renderer

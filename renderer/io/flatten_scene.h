@@ -3,6 +3,7 @@
 // Cost    bounded before anything is placed: triangles are counted node by node against the limit first.
 #pragma once
 
+#include "renderer/io/companion_files.h"
 #include "renderer/io/import_mesh.h"
 
 struct aiScene;
@@ -10,6 +11,7 @@ struct aiScene;
 namespace renderer {
 
 // `result.mesh` and notes are filled, by result.format; nodes must form a tree.
-std::optional<ImportFault> flatten_scene(const aiScene& scene, const Limits& limits, ImportedMesh& result);
+std::optional<ImportFault>
+flatten_scene(const aiScene& scene, CompanionFiles& files, const Limits& limits, ImportedMesh& result);
 
 } // namespace renderer

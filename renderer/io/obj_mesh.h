@@ -5,8 +5,8 @@
 //       materials, but only in a file that has them.
 #pragma once
 
-#include "renderer/geometry/array.h"
 #include "renderer/geometry/mesh.h"
+#include "renderer/math/array.h"
 
 #include <array>
 #include <cstddef>

@@ -117,9 +117,10 @@ class MtlReader {
 public:
     MtlReader(std::string_view text,
               std::string_view file,
+              MeshImages& images,
               std::vector<MeshMaterial>& materials,
               std::vector<std::string>& notes)
-        : lines_(text, true), file_(file), materials_(materials), notes_(notes)
+        : lines_(text, true), file_(file), images_(images), materials_(materials), notes_(notes)
     {
     }
     bool read();
@@ -127,6 +128,7 @@ public:
 private:
     bool statement(std::string_view word, std::string_view rest);
     bool property(std::string_view word, std::string_view rest);
+    void map(std::string_view word, std::string_view rest);
     void end_material();
     void note(const std::string& what)
     {
@@ -135,6 +137,7 @@ private:
 
     Lines lines_;
     std::string_view file_;
+    MeshImages& images_;
     std::vector<MeshMaterial>& materials_;
     std::vector<std::string>& notes_;
     MeshMaterial* material_ = nullptr;
@@ -159,19 +162,41 @@ bool MtlReader::property(std::string_view word, std::string_view rest)
     if (word == "Tr") return take_above(rest, 0, m.is_transparent);
     if (word == "Pm") return take_above(rest, 0, m.is_metal);
     if (word == "Pr") return take_below(rest, 1, m.has_roughness);
-    if (is_map(word) && m.textures.size() < 64) {
-        const std::string name = clean_utf8(texture_name(rest));
-        if (!name.empty()) m.textures.push_back(name);
-    }
+    if (is_map(word)) map(word, rest);
     return true;
 }
 
+void MtlReader::map(std::string_view word, std::string_view rest)
+{
+    MeshMaterial& m = *material_;
+    const std::string_view name = texture_name(rest);
+    if (name.empty() || m.textures.size() == 64) return;
+    m.textures.push_back(clean_utf8(name));
+    std::optional<TextureUse>* const use = word == "map_Kd"                       ? &m.color_map
+                                           : word == "map_Ks"                     ? &m.specular_map
+                                           : word == "map_d"                      ? &m.alpha_map
+                                           : word == "norm" || word == "map_norm" ? &m.normal_map
+                                                                                  : nullptr;
+    if (use == nullptr || *use) return;
+    const auto image = images_.of_file(name);
+    if (!image) return;
+    use->emplace().image = *image;
+    if (rest.find("-clamp on") != rest.npos) (*use)->wrap = TextureWrap::clamp;
+    if (use != &m.alpha_map) return;
+    (*use)->channel = images_.has_alpha(*image) ? 3 : 0;
+    m.cutoff = 0.5f;
+}
+
 // Grey and not black: a material without a colour is one whose colour is not known. It is so too where a
-// texture would give the colour, which is nearer to most textures than white.
+// texture that is not there would give the colour, which is nearer to most textures than white.
 void MtlReader::end_material()
 {
     constexpr std::size_t kMostNames = 4;
     if (!material_ || has_color_) return;
+    if (material_->color_map) {
+        material_->diffuse = {1, 1, 1};
+        return;
+    }
     if (++colorless_ <= kMostNames)
         colorless_names_ += (colorless_ > 1 ? ", " : "") + quoted(material_->name);
     else if (colorless_ == kMostNames + 1)
@@ -215,10 +240,11 @@ bool MtlReader::read()
 
 bool read_mtl(std::string_view text,
               std::string_view file,
+              MeshImages& images,
               std::vector<MeshMaterial>& materials,
               std::vector<std::string>& notes)
 {
-    return MtlReader(text, file, materials, notes).read();
+    return MtlReader(text, file, images, materials, notes).read();
 }
 
 } // namespace renderer

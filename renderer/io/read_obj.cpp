@@ -67,6 +67,7 @@ private:
     const Limits& limits_;
     ObjMesh obj_;
     ImportedMesh result_;
+    MeshImages images_{files_, limits_, result_};
     std::vector<ObjCorner> corners_; // of the face at hand
     std::vector<Vec3d> outline_;
     std::vector<Triangle> pieces_;
@@ -248,7 +249,7 @@ ObjReader::Check ObjReader::material_file(std::string_view name, std::string_vie
 {
     found_materials_ = true;
     if (!material_files_.emplace(name).second) return std::nullopt;
-    if (read_mtl(text, name, result_.mesh.materials, result_.notes)) return std::nullopt;
+    if (read_mtl(text, name, images_, result_.mesh.materials, result_.notes)) return std::nullopt;
     return ImportFault{"over_limit",
                        "the material files up to " + quoted(name) + " have more than " +
                            std::to_string(kMostMaterials) + " materials, which is the limit"};

@@ -80,13 +80,24 @@ void add_mesh(Budget& budget, const MeshFacts& mesh)
     budget.mesh_bytes += mesh.triangles * kMeshBytesPerTriangle + mesh.vertices * kMeshBytesPerVertex +
                          tree_bytes(mesh.triangles);
     budget.building_bytes = std::max(budget.building_bytes, tree_building_bytes(mesh.triangles));
+    budget.texture_bytes += mesh.image_bytes + mesh.image_bytes / 3;
     if (mesh.has_residuals)
         budget.mesh_bytes +=
             mesh.triangles * kResidualBytesPerTriangle + mesh.vertices * kResidualBytesPerVertex;
 }
 
-Budget
-predict(const SceneDescription& scene, std::span<const MeshFacts> meshes, const RenderSettings& settings)
+void add_image(Budget& budget, const ImageFacts& image)
+{
+    constexpr std::uint64_t kPlaneBytesPerPixel = 4 * sizeof(float); // of the level at hand, as numbers
+    budget.texture_bytes += image.bytes + image.bytes / 3;
+    budget.building_bytes =
+        std::max(budget.building_bytes, std::uint64_t{image.width} * image.height * kPlaneBytesPerPixel);
+}
+
+Budget predict(const SceneDescription& scene,
+               std::span<const MeshFacts> meshes,
+               const RenderSettings& settings,
+               std::span<const ImageFacts> images)
 {
     Budget b;
     const ImageSettings& image = settings.image;
@@ -97,6 +108,8 @@ predict(const SceneDescription& scene, std::span<const MeshFacts> meshes, const 
     b.building_bytes = scene.objects.size() * kInstanceBuildingBytes;
     for (const MeshFacts& facts : meshes)
         add_mesh(b, facts);
+    for (const ImageFacts& facts : images)
+        add_image(b, facts);
     if (settings.acceleration.levels == BvhLevels::none)
         for (const ObjectDescription& object : scene.objects)
             b.listed_triangles += triangles_of(object.shape, meshes);
@@ -122,14 +135,17 @@ void check_budget(const Budget& budget, const Limits& limits, FaultList& faults)
     // Trees are built before there is a film.
     const bool film_is_most = budget.film_bytes >= budget.building_bytes;
     const std::uint64_t transient = film_is_most ? budget.film_bytes : budget.building_bytes;
-    const std::uint64_t memory = transient + budget.mesh_bytes;
+    const std::uint64_t memory = transient + budget.mesh_bytes + budget.texture_bytes;
     if (memory > limits.render_memory_bytes)
         faults.add({film_is_most && budget.film_bytes > budget.mesh_bytes ? "/image" : "/scene/objects",
                     "over_limit",
                     refused(memory,
                             "bytes of memory (" + std::to_string(transient) +
                                 (film_is_most ? " for the picture, " : " to build trees, ") +
-                                std::to_string(budget.mesh_bytes) + " for meshes)",
+                                std::to_string(budget.mesh_bytes) + " for meshes" +
+                                (budget.texture_bytes > 0
+                                     ? ", " + std::to_string(budget.texture_bytes) + " for textures)"
+                                     : ")"),
                             "render_memory_bytes",
                             limits.render_memory_bytes)});
 }

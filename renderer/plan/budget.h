@@ -32,14 +32,20 @@ struct Budget {
     std::uint64_t listed_triangles = 0; // that every ray is tested against, where no tree is asked for
     std::uint64_t film_bytes = 0;       // sums, results on their way to them, the finished picture, its PNG
     std::uint64_t mesh_bytes = 0;       // vertices, indices, a BVH for each mesh and each different part
+    std::uint64_t texture_bytes = 0;    // pictures as decoded, and their levels; those of meshes too
     std::uint64_t building_bytes = 0;   // for the largest of the trees, before there is a film
 };
 
-Budget
-predict(const SceneDescription& scene, std::span<const MeshFacts> meshes, const RenderSettings& settings);
+Budget predict(const SceneDescription& scene,
+               std::span<const MeshFacts> meshes,
+               const RenderSettings& settings,
+               std::span<const ImageFacts> images = {});
 
 // One mesh with its tree, without those of its parts.
 void add_mesh(Budget& budget, const MeshFacts& mesh);
+
+// One picture of the scene's, with its levels.
+void add_image(Budget& budget, const ImageFacts& image);
 
 // One fault for each limit that the budget passes, with the number and the limit.
 void check_budget(const Budget& budget, const Limits& limits, FaultList& faults);

@@ -1,5 +1,6 @@
 #include "renderer/plan/check_description.h"
 
+#include "renderer/description/textured_values.h"
 #include "renderer/plan/light_shapes.h"
 #include "renderer/plan/placement.h"
 #include "renderer/plan/world_bounds.h"
@@ -118,12 +119,25 @@ private:
                                   : "no part \"" + shape.part + "\"; there are " + name_list(facts.parts));
     }
 
+    void check_coordinates(const Shape& shape, const std::string& at)
+    {
+        const auto* const mesh = std::get_if<MeshShape>(&shape);
+        if (mesh != nullptr && mesh->mesh < meshes_.size() && !meshes_[mesh->mesh].has_uvs)
+            fault(
+                at + "/material",
+                "no_texture_coordinates",
+                "its material has a texture, and the mesh has no texture coordinates to place it by: export "
+                "the mesh with them, or choose a material without textures");
+    }
+
     void check(const ObjectDescription& object, const std::string& at)
     {
         const std::size_t before = faults_.count();
         if (const auto* const mesh = std::get_if<MeshShape>(&object.shape)) check_mesh(*mesh, at);
         if (object.material && *object.material >= scene_.materials.size())
             fault(at + "/material", "unknown_material", "no such material");
+        else if (object.material && is_textured(scene_.materials[*object.material].material))
+            check_coordinates(object.shape, at);
         if (!has_size(object.shape))
             return fault(at, "out_of_range", "every size of a shape must be finite and above 0");
         if (!placement(object).inverse())

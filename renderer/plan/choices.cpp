@@ -1,5 +1,6 @@
 #include "renderer/plan/choices.h"
 
+#include "renderer/description/textured_values.h"
 #include "renderer/plan/light_shapes.h"
 #include "renderer/plan/material_choices.h"
 
@@ -18,6 +19,7 @@ struct Census {
     std::size_t objects = 0; // in all
     std::size_t mesh_objects = 0, rectangles = 0, disks = 0, boxes = 0, spheres = 0;
     std::size_t smooth = 0, flat_with_normals = 0, textured_meshes = 0;
+    std::size_t textured = 0, normal_mapped = 0, cut_out = 0; // objects
     MaterialCensus materials;
     std::set<std::uint32_t> shown_meshes;                            // with materials of their own
     std::size_t emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
@@ -46,12 +48,22 @@ void count_object(Census& c,
     c.disks += is_a<DiskShape>(object.shape);
     c.boxes += is_a<BoxShape>(object.shape);
     c.spheres += is_a<SphereShape>(object.shape);
-    if (object.material) return count_material(c.materials, scene.materials[*object.material].material);
+    if (object.material) {
+        const Material& material = scene.materials[*object.material].material;
+        if (is_textured(material)) ++c.textured;
+        if (normal_map_of(material) != nullptr) ++c.normal_mapped;
+        return count_material(c.materials, material);
+    }
     if (facts == nullptr || !facts->has_materials) {
         ++c.materials.default_diffuse;
         return;
     }
-    if (facts->has_textures) ++c.textured_meshes;
+    if (facts->images > 0 && facts->has_uvs)
+        ++c.textured;
+    else if (facts->has_textures)
+        ++c.textured_meshes;
+    if (facts->normal_mapped > 0) ++c.normal_mapped;
+    if (facts->cutouts > 0) ++c.cut_out;
     if (c.shown_meshes.insert(std::get<MeshShape>(object.shape).mesh).second) {
         c.emissive += facts->emissive_materials;
         c.transparent += facts->transparent_materials;
@@ -206,15 +218,30 @@ private:
                  c_.flat_with_normals != 0 ? "every object with vertex normals is asked to be flat"
                                            : "no mesh has vertex normals");
         explain_materials(c_.materials, out_);
+        textures();
         left_out_of_meshes();
+    }
+
+    void textures()
+    {
+        use_if(c_.textured,
+               "textures",
+               of(c_.textured, "object") +
+                   " whose materials are looked up in pictures, filtered to what a pixel sees of them");
+        use_if(c_.normal_mapped, "normal_maps", of(c_.normal_mapped, "object") + " with tilted normals");
+        use_if(c_.cut_out,
+               "alpha_cut_outs",
+               of(c_.cut_out, "object") + " with holes where its pictures' alpha says so");
     }
 
     void left_out_of_meshes()
     {
-        skip_if(c_.textured_meshes,
-                "textures",
-                of(c_.textured_meshes, "object") +
-                    " with textures of the mesh's own: their plain colours are used");
+        skip_if(
+            c_.textured_meshes,
+            "textures",
+            of(c_.textured_meshes, "object") +
+                " with textures of the mesh's own that did not come, cannot be read, or have no coordinates: "
+                "their plain colours are used");
         skip_if(c_.emissive,
                 "emission",
                 of(c_.emissive, "material") + " of meshes would shine: surfaces give no light, lights do");

@@ -48,11 +48,23 @@ MeshFacts facts_of(const Mesh& mesh)
         facts.transparent_materials += material.is_transparent;
         facts.metal_materials += material.is_metal;
         facts.rough_materials += material.has_roughness;
+        facts.cutouts += material.cutoff > 0;
+        facts.normal_mapped += material.normal_map.has_value();
     }
+    facts.has_uvs = !mesh.uvs.empty();
+    facts.images = static_cast<std::uint32_t>(mesh.images.size());
+    for (const MeshImage& named : mesh.images)
+        facts.image_bytes += named.image.bytes.size();
     for (const auto& [name, part] : mesh.parts_by_name())
         facts.parts.emplace(name,
                             PartFacts{part->first_triangle, part->triangle_count, part_bounds(mesh, *part)});
     return facts;
+}
+
+ImageFacts facts_of(const Image& image)
+{
+    return {
+        image.width, image.height, image.bytes.size(), image.has_alpha(), image.type == PixelType::real_32};
 }
 
 } // namespace renderer

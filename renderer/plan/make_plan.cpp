@@ -15,14 +15,15 @@ namespace renderer {
 std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
                                                  std::span<const MeshFacts> meshes,
                                                  const RenderSettings& settings,
-                                                 const Limits& limits)
+                                                 const Limits& limits,
+                                                 std::span<const ImageFacts> images)
 {
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     FaultList faults;
     check_description(description, meshes, faults);
     check_settings(settings, faults);
-    const Budget budget = predict(description, meshes, settings);
+    const Budget budget = predict(description, meshes, settings, images);
     check_budget(budget, limits, faults);
     if (!faults.empty()) return faults.take();
 

@@ -10,6 +10,7 @@
 #include "renderer/description/scene_description.h"
 #include "renderer/description/settings.h"
 #include "renderer/geometry/mesh.h"
+#include "renderer/textures/image.h"
 
 #include <cstdint>
 #include <limits>
@@ -37,12 +38,26 @@ struct MeshFacts {
     bool has_normals = false;
     bool has_materials = false;
     bool has_textures = false;
-    bool has_specular = false; // a material of its own shines: it is shaded as normalised Phong
+    bool has_uvs = false;
+    bool has_specular = false;     // a material of its own shines: it is shaded as normalised Phong
+    std::uint64_t image_bytes = 0; // of the pictures that came with it, decoded
+    std::uint32_t images = 0;
+    std::uint32_t cutouts = 0;       // materials with holes by alpha
+    std::uint32_t normal_mapped = 0; // materials with normal maps
     // Materials that some triangle has, by what of theirs is not modelled.
     std::uint32_t emissive_materials = 0, transparent_materials = 0, metal_materials = 0, rough_materials = 0;
     std::map<std::string, PartFacts> parts; // by name; of several of one name, the first
 };
 MeshFacts facts_of(const Mesh& mesh);
+
+// The same of a picture of the scene's.
+struct ImageFacts {
+    std::uint32_t width = 0, height = 0;
+    std::uint64_t bytes = 0; // decoded
+    bool has_alpha = false;
+    bool is_real = false; // floats: light, not codes
+};
+ImageFacts facts_of(const Image& image);
 
 // The description with everything filled in that it left open: camera, environment, lights.
 // What was assumed is told as ModelChoice ("assumed_camera", "assumed_sky", "assumed_sun").
@@ -72,6 +87,7 @@ struct Plan {
 std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
                                                  std::span<const MeshFacts> meshes,
                                                  const RenderSettings& settings,
-                                                 const Limits& limits);
+                                                 const Limits& limits,
+                                                 std::span<const ImageFacts> images = {});
 
 } // namespace renderer

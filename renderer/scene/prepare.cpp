@@ -1,7 +1,9 @@
+#include "renderer/description/textured_values.h"
 #include "renderer/geometry/shapes.h"
 #include "renderer/math/floating_point_mode.h"
 #include "renderer/plan/light_shapes.h"
 #include "renderer/plan/placement.h"
+#include "renderer/scene/mesh_materials.h"
 #include "renderer/scene/scene.h"
 
 #include <algorithm>
@@ -19,20 +21,6 @@ namespace renderer {
 namespace {
 
 using SharedMesh = std::shared_ptr<const PreparedMesh>;
-
-// A mesh's own material. What files call diffuse and specular often adds up to more than 1: both are dimmed
-// alike, so that no surface gives more light than it gets.
-Material from_mesh(const MeshMaterial& m)
-{
-    if (is_black(m.specular) || !(m.shininess > 0)) return DiffuseMaterial{m.diffuse};
-    const Rgb sum = m.diffuse + m.specular;
-    const float scale = 1 / std::max({1.0f, sum.r, sum.g, sum.b});
-    PhongMaterial phong;
-    phong.diffuse.value = m.diffuse * scale;
-    phong.specular.value = m.specular * scale;
-    phong.shininess = static_cast<double>(m.shininess);
-    return phong;
-}
 
 // The camera and the lights in the frame that is traced in.
 CameraDescription moved(CameraDescription camera, Vec3d world_origin)
@@ -60,13 +48,14 @@ public:
     Preparation(const SceneDescription& scene,
                 Vec3d world_origin,
                 std::span<const SharedMesh> meshes,
+                std::span<const SharedImage> images,
                 MeshTree tree,
                 ThreadPool& pool,
                 const std::stop_token& stop)
         : scene_(scene), world_origin_(world_origin), meshes_(meshes), tree_(tree), pool_(pool), stop_(stop)
     {
         for (const NamedMaterial& material : scene.materials)
-            bsdfs.push_back(make_bsdf(material.material));
+            add_material(of_scene(material.material), images);
         default_bsdf_ = next_bsdf();
         bsdfs.push_back(make_bsdf(DiffuseMaterial{}));
     }
@@ -84,6 +73,7 @@ public:
     }
 
     std::vector<Bsdf> bsdfs;
+    SurfaceTextures textures;
     std::vector<Instance> instances;
     std::vector<Scene::Parts::Look> looks;
     SceneLights lights;
@@ -92,6 +82,18 @@ public:
     NumericsReport numerics;
 
 private:
+    static TexturedMaterial of_scene(const Material& material)
+    {
+        TexturedMaterial textured{.material = material};
+        if (const TextureUse* const map = normal_map_of(material)) textured.normal_map = *map;
+        return textured;
+    }
+
+    void add_material(const TexturedMaterial& material, std::span<const SharedImage> images)
+    {
+        bsdfs.push_back(make_bsdf(textures.add(next_bsdf(), material, images)));
+    }
+
     std::uint32_t next_bsdf() const { return static_cast<std::uint32_t>(bsdfs.size()); }
 
     void hold(const SharedMesh& mesh)
@@ -260,9 +262,13 @@ private:
     std::uint32_t own_materials(const Mesh& mesh)
     {
         const auto [entry, is_new] = first_own_.try_emplace(&mesh, next_bsdf());
-        if (is_new)
-            for (const MeshMaterial& material : mesh.materials)
-                bsdfs.push_back(make_bsdf(from_mesh(material)));
+        if (!is_new) return entry->second;
+        // They live as long as the mesh, which is held.
+        std::vector<SharedImage> images;
+        for (const MeshImage& named : mesh.images)
+            images.emplace_back(SharedImage(), &named.image);
+        for (const MeshMaterial& material : mesh.materials)
+            add_material(from_mesh(material), images);
         return entry->second;
     }
 
@@ -338,12 +344,13 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      std::span<const std::shared_ptr<const PreparedMesh>> meshes,
                                      const RenderSettings& settings,
                                      ThreadPool& pool,
-                                     const std::stop_token& stop)
+                                     const std::stop_token& stop,
+                                     std::span<const SharedImage> images)
 {
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     const AccelerationSettings& acceleration = settings.acceleration;
-    Preparation made(description, plan.world_origin, meshes, mesh_tree(acceleration), pool, stop);
+    Preparation made(description, plan.world_origin, meshes, images, mesh_tree(acceleration), pool, stop);
     if (!made.run()) return nullptr;
     if (plan.picks_lights) made.lights.pick_by_tree();
 
@@ -367,7 +374,8 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                                       made.geometry,
                                                       made.numerics,
                                                       std::move(made.looks),
-                                                      media});
+                                                      media,
+                                                      std::move(made.textures)});
 }
 
 } // namespace renderer

@@ -28,7 +28,14 @@ Vec3d Scene::shading_normal(const SceneHit& hit, const Mesh& mesh) const
     return is_finite(world) && max_component(abs(world)) > 0 ? normalize(world) : Vec3d{};
 }
 
-Surface Scene::surface_at(const SceneHit& hit, Vec3d toward_viewer) const
+std::uint32_t Scene::material_at(const SceneHit& hit) const
+{
+    const Parts::Look& look = parts_.looks[hit.instance];
+    if (look.materials_of == nullptr || look.materials_of->triangle_materials.empty()) return look.first_bsdf;
+    return look.first_bsdf + look.materials_of->triangle_materials[hit.primitive];
+}
+
+Surface Scene::surface_at(const SceneHit& hit, Vec3d toward_viewer, BsdfRoom* room, double width) const
 {
     const Parts::Look& look = parts_.looks[hit.instance];
     const Vec3d outward = hit.point.normal;
@@ -39,11 +46,12 @@ Surface Scene::surface_at(const SceneHit& hit, Vec3d toward_viewer) const
         shading = geometric; // none, or at right angles: it cannot be told which side it means
     else if (agreement < 0)
         shading = -shading;
-    std::uint32_t number = look.first_bsdf;
-    if (look.materials_of != nullptr && !look.materials_of->triangle_materials.empty())
-        number += look.materials_of->triangle_materials[hit.primitive];
+    const std::uint32_t material = material_at(hit);
     const bool is_outside = dot(outward, toward_viewer) >= 0;
-    const Bsdf* bsdf = &parts_.bsdfs[number];
+    const Bsdf* bsdf = &parts_.bsdfs[material];
+    const TexturedMaterial* const textured =
+        room != nullptr && !parts_.textures.empty() ? parts_.textures.find(material) : nullptr;
+    if (textured != nullptr) bsdf = dress(hit, *textured, toward_viewer, *room, width, shading);
     if (!bsdf->two_sided && !is_outside) bsdf = &kBlack;
     return {hit.point, to_float(geometric), shading, Frame(to_float(shading)), is_outside, bsdf};
 }

@@ -19,6 +19,7 @@
 #include "renderer/plan/plan.h"
 #include "renderer/sampling/warp.h"
 #include "renderer/scene/scene_lights.h"
+#include "renderer/scene/surface_textures.h"
 
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,11 @@ struct Surface {
     Frame shading;          // around it
     bool is_outside = true; // the viewer is where the shape's own normal points
     const Bsdf* bsdf = nullptr;
+};
+
+// Where a textured material is made at a hit: a Surface may point into it. Nothing until then.
+struct BsdfRoom {
+    alignas(Bsdf) std::byte bytes[sizeof(Bsdf)];
 };
 
 class Scene {
@@ -58,7 +64,8 @@ public:
             const Mesh* normals_of = nullptr;   // the mesh whose normals are interpolated; or none: flat
         };
         std::vector<Look> looks;
-        Media media_at_camera; // that its eye is inside of
+        Media media_at_camera;    // that its eye is inside of
+        SurfaceTextures textures; // by the numbers of bsdfs
     };
     explicit Scene(Parts parts) : parts_(std::move(parts)) {}
 
@@ -90,16 +97,43 @@ public:
     const GeometryReport& geometry() const { return parts_.geometry; }
     const NumericsReport& numerics() const { return parts_.numerics; }
 
-    // `toward_viewer` points away from the surface, any length but zero.
-    Surface surface_at(const SceneHit& hit, Vec3d toward_viewer) const;
+    // As of tree(), but that rays go on through holes which textures make. Scenes without such pay nothing.
+    std::uint64_t closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind) const
+    {
+        const std::uint64_t hit = parts_.tree.closest_hits(rays, hits, kind);
+        return parts_.textures.has_holes() ? past_holes(rays, hits, kind, hit) : hit;
+    }
+    std::uint64_t any_hits(std::span<const Ray> rays) const
+    {
+        const std::uint64_t hit = parts_.tree.any_hits(rays);
+        return parts_.textures.has_holes() ? behind_holes(rays, hit) : hit;
+    }
+
+    // `toward_viewer` points away from the surface, any length but zero. `room`: for the material where a picture
+    // gives it; without room the pictures' means are taken. `width`: of what the ray stands for, where it arrives,
+    // in metres; 0 where that is not known.
+    Surface
+    surface_at(const SceneHit& hit, Vec3d toward_viewer, BsdfRoom* room = nullptr, double width = 0) const;
 
 private:
+    std::uint32_t material_at(const SceneHit& hit) const;
+    bool is_hole(const SceneHit& hit) const;
+    std::uint64_t
+    past_holes(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind, std::uint64_t hit) const;
+    std::uint64_t behind_holes(std::span<const Ray> rays, std::uint64_t hit) const;
+    // The material at that point, made in `room`; turns `shading` where a map says so.
+    const Bsdf* dress(const SceneHit& hit,
+                      const TexturedMaterial& textured,
+                      Vec3d toward_viewer,
+                      BsdfRoom& room,
+                      double width,
+                      Vec3d& shading) const;
     Vec3d shading_normal(const SceneHit& hit, const Mesh& mesh) const;
 
     Parts parts_;
 };
 
-// meshes[i] is the prepared form of description.meshes[i]; `plan` is make_plan's for this very scene, so that
+// meshes[i] is the prepared form of description.meshes[i], images[i] the decoded one of description.images[i]; `plan` is make_plan's for this very scene, so that
 // nothing is checked again. Builds the trees of the parts that objects name: nullptr only if `stop` was
 // requested meanwhile.
 std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
@@ -107,6 +141,7 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      std::span<const std::shared_ptr<const PreparedMesh>> meshes,
                                      const RenderSettings& settings,
                                      ThreadPool& pool,
-                                     const std::stop_token& stop = {});
+                                     const std::stop_token& stop = {},
+                                     std::span<const SharedImage> images = {});
 
 } // namespace renderer

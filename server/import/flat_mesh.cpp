@@ -3,6 +3,7 @@
 #include "api/words/limit_words.h"
 #include "renderer/geometry/validate_mesh.h"
 #include "server/import/allowance.h"
+#include "server/import/flat_texts.h"
 
 #include <array>
 #include <cstring>
@@ -15,10 +16,9 @@ namespace server {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'H', 'E', 'L', 'I', 'O', 'M', 'S', 'H'};
-constexpr std::uint32_t kLongestText = 4096;
 constexpr std::uint64_t kMostTextBytes = 32u << 20; // an entry of four bytes may take 32 in memory
 
-enum class Kind : std::uint32_t { mesh, failure };
+enum class Kind : std::uint32_t { mesh, failure, picture };
 
 struct Head {
     std::array<char, 8> magic = kMagic;
@@ -28,8 +28,12 @@ struct Head {
     std::uint64_t text_bytes = 0;
     std::uint64_t residuals = 0;
     renderer::Vec3d origin{};
+    std::uint64_t image_bytes = 0; // of all pictures, each at a multiple of kImageStep
 };
-static_assert(std::is_trivially_copyable_v<Head> && sizeof(Head) == 96);
+static_assert(std::is_trivially_copyable_v<Head> && sizeof(Head) == 104);
+
+// So that their floats, and the arrays behind them, lie where such may lie.
+constexpr std::size_t kImageStep = 8;
 
 // The arrays, in the order of the file, each with the member of Head that counts it.
 template <typename Visit>
@@ -43,106 +47,27 @@ void for_each_array(Head& head, auto& mesh, Visit visit)
     visit(head.triangle_materials, mesh.triangle_materials);
 }
 
-class TextWriter {
-public:
-    template <typename T>
-    requires std::is_arithmetic_v<T>
-    void add(T value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
-    void add(renderer::Rgb color)
-    {
-        add(color.r);
-        add(color.g);
-        add(color.b);
-    }
-    void add(const std::string& text)
-    {
-        const auto size = static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), kLongestText));
-        add(size);
-        bytes_.append(text, 0, size);
-    }
-    template <typename T>
-    void add(const std::vector<T>& list)
-    {
-        add(static_cast<std::uint32_t>(list.size()));
-        for (const T& entry : list)
-            add(entry);
-    }
-    void add(const renderer::MeshMaterial& m)
-    {
-        add(m.name);
-        add(m.diffuse);
-        add(m.specular);
-        add(m.shininess);
-        add(m.textures);
-        for (const bool is : {m.emits, m.is_transparent, m.is_metal, m.has_roughness})
-            add(static_cast<std::uint8_t>(is));
-    }
-    void add(const renderer::MeshPart& p)
-    {
-        add(p.name);
-        add(p.first_triangle);
-        add(p.triangle_count);
-    }
-    std::span<const std::byte> bytes() const { return std::as_bytes(std::span(bytes_)); }
+std::uint64_t padded(std::uint64_t bytes)
+{
+    return (bytes + kImageStep - 1) / kImageStep * kImageStep;
+}
 
-private:
-    std::string bytes_;
-};
+// The pictures in the order of the file.
+template <typename Visit>
+void for_each_image(auto& outcome, Visit visit)
+{
+    if (auto* const picture = std::get_if<ImportedPicture>(&outcome)) visit(picture->image);
+    if (auto* const asset = std::get_if<ImportedAsset>(&outcome))
+        for (auto& named : asset->mesh.images)
+            visit(named.image);
+}
 
-// Every take() returns false, and takes nothing more, once the bytes do not hold what is asked for.
-class TextReader {
-public:
-    explicit TextReader(std::span<const std::byte> bytes) : rest_(bytes) {}
-
-    template <typename T>
-    requires std::is_arithmetic_v<T>
-    bool take(T& value)
-    {
-        if (rest_.size() < sizeof value) return false;
-        std::memcpy(&value, rest_.data(), sizeof value);
-        rest_ = rest_.subspan(sizeof value);
-        return true;
-    }
-    bool take_flag(bool& flag)
-    {
-        std::uint8_t byte = 0;
-        if (!take(byte) || byte > 1) return false;
-        flag = byte == 1;
-        return true;
-    }
-    bool take(renderer::Rgb& color) { return take(color.r) && take(color.g) && take(color.b); }
-    bool take(std::string& text)
-    {
-        std::uint32_t size = 0;
-        if (!take(size) || size > kLongestText || size > rest_.size()) return false;
-        text.assign(reinterpret_cast<const char*>(rest_.data()), size);
-        rest_ = rest_.subspan(size);
-        return is_utf8(text);
-    }
-    template <typename T>
-    bool take(std::vector<T>& list)
-    {
-        std::uint32_t size = 0;
-        if (!take(size) || size > rest_.size()) return false; // each entry takes a byte at least
-        for (std::uint32_t i = 0; i < size; ++i)
-            if (!take(list.emplace_back())) return false;
-        return true;
-    }
-    bool take(renderer::MeshMaterial& m)
-    {
-        return take(m.name) && take(m.diffuse) && take(m.specular) && take(m.shininess) && take(m.textures) &&
-               take_flag(m.emits) && take_flag(m.is_transparent) && take_flag(m.is_metal) &&
-               take_flag(m.has_roughness);
-    }
-    bool take(renderer::MeshPart& p)
-    {
-        return take(p.name) && take(p.first_triangle) && take(p.triangle_count);
-    }
-    bool at_end() const { return rest_.empty(); }
-
-private:
-    std::span<const std::byte> rest_;
-};
+std::uint64_t image_bytes_of(const ImportOutcome& outcome)
+{
+    std::uint64_t bytes = 0;
+    for_each_image(outcome, [&](const renderer::Image& image) { bytes += padded(image.bytes.size()); });
+    return bytes;
+}
 
 TextWriter texts_of(const ImportOutcome& outcome)
 {
@@ -152,11 +77,17 @@ TextWriter texts_of(const ImportOutcome& outcome)
         texts.add(failure->detail);
         return texts;
     }
+    if (const auto* picture = std::get_if<ImportedPicture>(&outcome)) {
+        texts.add(picture->format);
+        texts.add(picture->image);
+        return texts;
+    }
     const auto& asset = std::get<ImportedAsset>(outcome);
     texts.add(asset.format);
     texts.add(asset.notes);
     texts.add(asset.mesh.materials);
     texts.add(asset.mesh.parts);
+    texts.add(asset.mesh.images);
     return texts;
 }
 
@@ -164,9 +95,10 @@ Head head_of(const ImportOutcome& outcome, std::uint64_t text_bytes)
 {
     Head head;
     head.text_bytes = text_bytes;
+    head.image_bytes = image_bytes_of(outcome);
     const auto* asset = std::get_if<ImportedAsset>(&outcome);
     if (asset == nullptr) {
-        head.kind = Kind::failure;
+        head.kind = std::holds_alternative<ImportFailure>(outcome) ? Kind::failure : Kind::picture;
         return head;
     }
     head.origin = asset->mesh.origin;
@@ -176,7 +108,7 @@ Head head_of(const ImportOutcome& outcome, std::uint64_t text_bytes)
 
 ImportFailure unsound(const std::string& what)
 {
-    return {"import_crashed", "the importer's answer is not sound (" + what + "); the mesh is likely broken"};
+    return {"import_crashed", "the importer's answer is not sound (" + what + "); the file is likely broken"};
 }
 
 // What the head promises, if it fits 64 bits and these bytes.
@@ -186,6 +118,8 @@ bool is_exact(Head& head, std::uint64_t available)
     std::uint64_t left = available - sizeof(Head);
     bool fits = head.text_bytes <= left && head.text_bytes <= kMostTextBytes;
     if (fits) left -= head.text_bytes;
+    fits = fits && head.image_bytes <= left;
+    if (fits) left -= head.image_bytes;
     for_each_array(head, empty, [&](std::uint64_t& count, const auto& array) {
         constexpr std::size_t kEach = sizeof(typename std::remove_reference_t<decltype(array)>::value_type);
         fits = fits && count <= left / kEach;
@@ -194,15 +128,59 @@ bool is_exact(Head& head, std::uint64_t available)
     return fits && left == 0;
 }
 
+// Each picture's bytes, lent from where they stand; what is wrong with them, if anything is.
+std::optional<std::string> lend_images(const Head& head, const MappedBytes& flat, ImportOutcome& outcome)
+{
+    std::optional<std::string> bad;
+    std::uint64_t at = 0;
+    for_each_image(outcome, [&](renderer::Image& image) {
+        if (bad) return;
+        // Sides are judged below: here their product has to fit 64 bits.
+        const bool is_sized = image.width < (1u << 25) && image.height < (1u << 25) && image.channels <= 4;
+        const std::uint64_t bytes = is_sized ? image.expected_bytes() : 0;
+        if (!is_sized || padded(bytes) > head.image_bytes - at) {
+            bad = "a picture passes the end of them all";
+            return;
+        }
+        image.bytes =
+            renderer::Array<std::byte>::lent(flat.bytes.subspan(sizeof(Head) + at, bytes), flat.keeper);
+        at += padded(bytes);
+        if (auto unfit = renderer::validate_image(image)) bad = "a picture: " + *unfit;
+    });
+    if (!bad && at != head.image_bytes) bad = "there are bytes of no picture";
+    return bad;
+}
+
+ImportFailure over_pixels(const renderer::Image& image, const renderer::Limits& limits)
+{
+    return {"over_limit",
+            std::to_string(image.pixels()) + " pixels, the limit is " +
+                std::to_string(limits.texture_pixels) + " (" + api::flag_of("texture_pixels") + ")"};
+}
+
+ImportOutcome read_picture(const Head& head, const MappedBytes& flat, const renderer::Limits& limits)
+{
+    ImportOutcome outcome = ImportedPicture{};
+    auto& picture = std::get<ImportedPicture>(outcome);
+    TextReader texts(flat.bytes.last(head.text_bytes));
+    const bool no_arrays = sizeof(Head) + head.image_bytes + head.text_bytes == flat.bytes.size();
+    if (!no_arrays || !texts.take(picture.format) || !texts.take(picture.image) || !texts.at_end())
+        return unsound("its texts cannot be read");
+    if (const auto bad = lend_images(head, flat, outcome)) return unsound(*bad);
+    if (picture.image.pixels() > limits.texture_pixels) return over_pixels(picture.image, limits);
+    return outcome;
+}
+
 ImportOutcome read_mesh(Head head, const MappedBytes& flat, const renderer::Limits& limits)
 {
     if (head.triangles > limits.triangles)
         return ImportFailure{"over_limit",
                              std::to_string(head.triangles) + " triangles, the limit is " +
                                  std::to_string(limits.triangles) + " (" + api::flag_of("triangles") + ")"};
-    ImportedAsset asset;
+    ImportOutcome outcome = ImportedAsset{};
+    auto& asset = std::get<ImportedAsset>(outcome);
     asset.mesh.origin = head.origin;
-    std::size_t at = sizeof(Head);
+    std::size_t at = sizeof(Head) + head.image_bytes;
     for_each_array(head, asset.mesh, [&](std::uint64_t count, auto& array) {
         using Value = typename std::remove_reference_t<decltype(array)>::value_type;
         // Every array begins at a multiple of its numbers' size: they are of 4 bytes, the last of 2.
@@ -212,10 +190,13 @@ ImportOutcome read_mesh(Head head, const MappedBytes& flat, const renderer::Limi
     });
     TextReader texts(flat.bytes.subspan(at));
     if (!texts.take(asset.format) || !texts.take(asset.notes) || !texts.take(asset.mesh.materials) ||
-        !texts.take(asset.mesh.parts) || !texts.at_end())
+        !texts.take(asset.mesh.parts) || !texts.take(asset.mesh.images) || !texts.at_end())
         return unsound("its texts cannot be read");
+    if (const auto bad = lend_images(head, flat, outcome)) return unsound(*bad);
+    for (const renderer::MeshImage& named : asset.mesh.images)
+        if (named.image.pixels() > limits.texture_pixels) return over_pixels(named.image, limits);
     if (const auto fault = renderer::validate_mesh(asset.mesh)) return unsound(fault->detail);
-    return asset;
+    return outcome;
 }
 
 ImportOutcome read_failure(const Head& head, std::span<const std::byte> bytes)
@@ -233,7 +214,7 @@ ImportOutcome read_failure(const Head& head, std::span<const std::byte> bytes)
 ImportOutcome within_flat_bounds(ImportOutcome outcome, const renderer::Limits& limits)
 {
     const std::uint64_t text_bytes = texts_of(outcome).bytes().size();
-    std::uint64_t bytes = sizeof(Head) + text_bytes;
+    std::uint64_t bytes = sizeof(Head) + text_bytes + image_bytes_of(outcome);
     Head head;
     if (const auto* asset = std::get_if<ImportedAsset>(&outcome))
         for_each_array(head, asset->mesh, [&](std::uint64_t&, const auto& array) {
@@ -241,7 +222,7 @@ ImportOutcome within_flat_bounds(ImportOutcome outcome, const renderer::Limits& 
         });
     if (bytes > limits.import_output_bytes)
         return ImportFailure{"over_limit",
-                             "the mesh takes " + std::to_string(bytes) +
+                             "the file takes " + std::to_string(bytes) +
                                  " bytes when imported, the limit is " +
                                  std::to_string(limits.import_output_bytes) + " (" +
                                  allowance_words("import_output_bytes") + ")"};
@@ -257,6 +238,11 @@ void write_flat(const ImportOutcome& outcome, const ByteSink& sink)
     const TextWriter texts = texts_of(outcome);
     Head head = head_of(outcome, texts.bytes().size());
     sink(std::as_bytes(std::span(&head, 1)));
+    for_each_image(outcome, [&](const renderer::Image& image) {
+        constexpr std::array<std::byte, kImageStep> kZeros{};
+        sink(std::span(std::as_const(image.bytes)));
+        sink(std::span(kZeros).first(padded(image.bytes.size()) - image.bytes.size()));
+    });
     if (const auto* asset = std::get_if<ImportedAsset>(&outcome))
         for_each_array(head, asset->mesh, [&](std::uint64_t&, const auto& array) {
             sink(std::as_bytes(std::span(array)));
@@ -274,31 +260,8 @@ ImportOutcome read_flat(const MappedBytes& flat, const renderer::Limits& limits)
     if (!is_exact(head, bytes.size())) return unsound("its size is not what it promises");
     if (head.kind == Kind::failure) return read_failure(head, bytes);
     if (head.kind == Kind::mesh) return read_mesh(head, flat, limits);
+    if (head.kind == Kind::picture) return read_picture(head, flat, limits);
     return unsound("its kind is unknown");
-}
-
-bool is_utf8(std::string_view text)
-{
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    for (std::size_t at = 0; at < text.size();) {
-        const unsigned first = byte(at);
-        const std::size_t length = first < 0x80   ? 1
-                                   : first < 0xc2 ? 0
-                                   : first < 0xe0 ? 2
-                                   : first < 0xf0 ? 3
-                                   : first < 0xf5 ? 4
-                                                  : 0;
-        if (length == 0 || text.size() - at < length) return false;
-        for (std::size_t i = 1; i < length; ++i)
-            if ((byte(at + i) & 0xc0u) != 0x80u) return false;
-        const unsigned second = length > 1 ? byte(at + 1) : 0;
-        if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f))
-            return false; // overlong, surrogate
-        if ((first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f))
-            return false; // overlong, beyond
-        at += length;
-    }
-    return true;
 }
 
 } // namespace server

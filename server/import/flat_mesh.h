@@ -1,5 +1,5 @@
-// The flat form in which heliograph-import hands a mesh, or a failure, to the service: a head with counts,
-// the arrays as they stand in memory, then the texts. It never leaves the machine, so it has this machine's
+// The flat form in which heliograph-import hands a mesh, a picture, or a failure, to the service: a head
+// with counts, pictures and arrays as they stand in memory, then the texts. It never leaves the machine, so it has this machine's
 // byte order.
 //
 // Shared  the arrays of what read_flat() gives are lent: they stand where the bytes stand, and keep those.
@@ -11,6 +11,7 @@
 
 #include "renderer/description/limits.h"
 #include "renderer/geometry/mesh.h"
+#include "renderer/textures/image.h"
 #include "server/import/import_failure.h"
 #include "server/import/mapped_bytes.h"
 
@@ -19,6 +20,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -26,7 +28,10 @@ namespace server {
 
 // Changes whenever the flat form or what the importer makes of a file does: the head of the form has it, so that
 // a service never takes the output of another build's importer.
-constexpr std::uint32_t kImporterVersion = 3;
+constexpr std::uint32_t kImporterVersion = 4;
+
+// How the name that the importer is given begins where a picture is wanted.
+inline constexpr std::string_view kPictureWord = "picture";
 
 struct ImportedAsset {
     renderer::Mesh mesh;
@@ -34,14 +39,17 @@ struct ImportedAsset {
     std::vector<std::string> notes;
 };
 
-using ImportOutcome = std::variant<ImportedAsset, ImportFailure>;
+struct ImportedPicture {
+    renderer::Image image;
+    std::string format; // its name in image_formats.h
+};
+
+using ImportOutcome = std::variant<ImportedAsset, ImportedPicture, ImportFailure>;
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
 // The outcome itself, or "over_limit" where its flat form would be refused for its size.
 ImportOutcome within_flat_bounds(ImportOutcome outcome, const renderer::Limits& limits);
 void write_flat(const ImportOutcome& outcome, const ByteSink& sink);
 ImportOutcome read_flat(const MappedBytes& flat, const renderer::Limits& limits);
-
-bool is_utf8(std::string_view text);
 
 } // namespace server

@@ -15,6 +15,7 @@ std::uint64_t bytes_of(const KnownImport& known)
     std::uint64_t bytes = 0;
     for (const auto& mesh : known.prepared)
         if (mesh) bytes += renderer::size_bytes(*mesh);
+    if (known.picture) bytes += known.picture->bytes.size();
     return bytes;
 }
 
@@ -64,6 +65,7 @@ void ImportCache::store(KnownImport known)
         for (std::size_t tree = 0; tree < known.prepared.size(); ++tree)
             if (!known.prepared[tree]) known.prepared[tree] = std::move(entry->prepared[tree]);
         if (!known.facts) known.facts = std::move(entry->facts);
+        if (!known.picture) known.picture = std::move(entry->picture);
         *entry = std::move(known);
         entries_.splice(entries_.begin(), entries_, entry);
     } else {
@@ -83,13 +85,14 @@ void ImportCache::forget(Entries::iterator entry)
     entries_.erase(entry);
 }
 
-// Meshes go first, oldest first; what was just stored goes too if it alone is too large (who asked holds it
+// Meshes and pictures go first, oldest first; what was just stored goes too if it alone is too large (who asked holds it
 // anyway).
 void ImportCache::make_room()
 {
     for (auto entry = entries_.rbegin(); entry != entries_.rend() && bytes_ > most_bytes_; ++entry) {
         bytes_ -= bytes_of(*entry);
         entry->prepared = {};
+        entry->picture = nullptr;
     }
     while (entries_.size() > kMostEntries)
         forget(std::prev(entries_.end()));

@@ -1,5 +1,5 @@
-// ImportCache: what imports came to, by content: prepared meshes, least recently used first out by bytes, and
-// what is known of a mesh without them: its figures, or why it does not import.
+// ImportCache: what imports came to, by content: prepared meshes and pictures, least recently used first out by
+// bytes, and what is known of a file without them: its figures, or why it does not import.
 //
 // Key      the main file's digest, the extension that hinted at its format, and every name that the importer
 //          asked for with the digest that answered (or that there was none): where all those agree, the
@@ -11,6 +11,7 @@
 #include "api/job_view.h"
 #include "renderer/accel/prepared_mesh.h"
 #include "renderer/plan/plan.h"
+#include "renderer/textures/image.h"
 #include "server/import/import_failure.h"
 
 #include <array>
@@ -31,10 +32,12 @@ struct KnownImport {
     std::string main;     // digest and extension
     NamedDigests answers; // to what the importer asked
     std::optional<ImportFailure> failure;
-    std::optional<api::AssetInfo::MeshInfo> figures;  // engaged unless it failed
+    std::optional<api::AssetInfo::MeshInfo> figures;  // engaged of a mesh
     std::shared_ptr<const renderer::MeshFacts> facts; // once a mesh was prepared
     std::array<std::shared_ptr<const renderer::PreparedMesh>, renderer::kMeshTrees>
         prepared; // by tree; null where not (any more) in memory
+    std::optional<api::AssetInfo::ImageInfo> picture_figures{}; // engaged of a picture, instead of `figures`
+    std::shared_ptr<const renderer::Image> picture{};           // null where not (any more) in memory
 };
 
 class ImportCache {

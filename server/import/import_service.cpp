@@ -31,18 +31,21 @@ std::string extension_of(const std::string& name)
     std::string extension = std::filesystem::path(name).extension().string();
     for (char& c : extension)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return renderer::is_mesh_extension(extension) ? extension : std::string();
+    const bool is_known = renderer::is_mesh_extension(extension) || extension == ".tga"; // which has no mark
+    return is_known ? extension : std::string();
 }
 
+// The same bytes may be wanted as one thing or another, with another answer.
 std::string main_key(const ImportRequest& request)
 {
-    return request.digest + extension_of(request.name);
+    return request.digest + (request.is_picture ? std::string(kPictureWord) : "") +
+           extension_of(request.name);
 }
 
 // An asset by itself, as /info looks at it.
 ImportRequest bare_request(const std::string& digest)
 {
-    return {"", digest, {}, renderer::MeshTree::wide_sah};
+    return {"", digest, {}, renderer::MeshTree::wide_sah, false};
 }
 
 api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const KnownImport& known)
@@ -51,6 +54,7 @@ api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const Kno
     info.digest = digest;
     info.bytes = bytes;
     info.mesh = known.figures;
+    info.image = known.picture_figures;
     if (known.failure) info.fault = api::Problem{"", known.failure->code, known.failure->detail};
     return info;
 }
@@ -65,7 +69,12 @@ std::string digest_of_file(const std::filesystem::path& path)
 ImportFailure out_of_memory()
 {
     return {"import_out_of_memory",
-            "there is not enough memory for this mesh now; try again, or simplify it"};
+            "there is not enough memory for this file now; try again, or simplify it"};
+}
+
+ImportFailure not_a_mesh(const api::AssetInfo::ImageInfo& picture)
+{
+    return {"not_a_mesh", "the file is a picture (" + picture.format + "), not a mesh"};
 }
 
 } // namespace
@@ -106,7 +115,8 @@ struct ImportService::State {
         std::string main_;
     };
 
-    using Imported = std::variant<std::monostate, ImportedAsset, ImportFailure>; // nothing: stopped
+    using Imported =
+        std::variant<std::monostate, ImportedAsset, ImportedPicture, ImportFailure>; // nothing: stopped
 
     // Until `answer` finds one in the cache (then it is returned, no flight) or this caller may import (then
     // nothing, and the flight is this caller's). `stopped` is set, and nothing returned, if `stop` was
@@ -185,6 +195,7 @@ struct ImportService::State {
             run_import({program,
                         file.get(),
                         extension_of(request.name),
+                        request.is_picture,
                         [&](std::string_view name) { return open_companion(request, name, answers); },
                         limits,
                         bytes_of(request)},
@@ -194,6 +205,7 @@ struct ImportService::State {
         if (!end.outcome) return std::monostate();
         repeatable = end.repeatable;
         if (auto* asset = std::get_if<ImportedAsset>(&*end.outcome)) return std::move(*asset);
+        if (auto* picture = std::get_if<ImportedPicture>(&*end.outcome)) return std::move(*picture);
         auto& failure = std::get<ImportFailure>(*end.outcome);
         log.write(LogLevel::info,
                   "import_failed",
@@ -258,6 +270,7 @@ try {
     const auto tree = static_cast<std::size_t>(request.tree);
     const auto answer = [&](const KnownImport& known) -> std::optional<Answer> {
         if (known.failure) return *known.failure;
+        if (known.picture_figures) return not_a_mesh(*known.picture_figures);
         if (known.prepared[tree])
             return PreparedAsset{known.prepared[tree], known.figures->notes, known.facts};
         return std::nullopt;
@@ -277,6 +290,12 @@ try {
         if (repeatable) state_->remember(std::move(known));
         return std::move(*failure);
     }
+    if (const auto* picture = std::get_if<ImportedPicture>(&imported)) {
+        known.picture_figures = picture_figures(*picture);
+        const ImportFailure failure = not_a_mesh(*known.picture_figures);
+        state_->remember(std::move(known));
+        return failure;
+    }
     auto* asset = std::get_if<ImportedAsset>(&imported);
     if (!asset) return PreparedAsset{};
     known.figures = mesh_figures(*asset);
@@ -287,6 +306,40 @@ try {
     if (state_->stored && prepared.mesh) state_->stored->keep(known, request.tree);
     state_->remember(std::move(known));
     return prepared;
+} catch (const std::bad_alloc&) {
+    return out_of_memory();
+}
+
+std::variant<ImportedPixels, ImportFailure>
+ImportService::picture(const std::string& name, const std::string& digest, const std::stop_token& stop)
+try {
+    using Answer = std::variant<ImportedPixels, ImportFailure>;
+    const auto answer = [&](const KnownImport& known) -> std::optional<Answer> {
+        if (known.failure) return *known.failure;
+        if (known.picture) return known.picture;
+        return std::nullopt;
+    };
+    const ImportRequest request{name, digest, {}, renderer::MeshTree::wide_sah, true};
+    bool stopped = false;
+    if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return std::move(*found);
+    if (stopped) return ImportedPixels();
+    const State::Flight flight(*state_, main_key(request));
+
+    KnownImport known{main_key(request), {}, {}, {}, {}, {}};
+    bool repeatable = false;
+    State::Imported imported = state_->import(request, known.answers, repeatable, stop);
+    if (auto* failure = std::get_if<ImportFailure>(&imported)) {
+        known.failure = *failure;
+        if (repeatable) state_->remember(std::move(known));
+        return std::move(*failure);
+    }
+    auto* picture = std::get_if<ImportedPicture>(&imported);
+    if (!picture) return ImportedPixels();
+    known.picture_figures = picture_figures(*picture);
+    const auto pixels = std::make_shared<const renderer::Image>(std::move(picture->image));
+    known.picture = pixels;
+    state_->remember(std::move(known));
+    return pixels;
 } catch (const std::bad_alloc&) {
     return out_of_memory();
 }
@@ -318,6 +371,8 @@ std::optional<api::AssetInfo> ImportService::info(const std::string& digest, con
         if (std::holds_alternative<std::monostate>(imported)) return std::nullopt;
         if (const auto* failure = std::get_if<ImportFailure>(&imported))
             known.failure = *failure;
+        else if (const auto* picture = std::get_if<ImportedPicture>(&imported))
+            known.picture_figures = picture_figures(*picture);
         else
             known.figures = mesh_figures(std::get<ImportedAsset>(imported));
         auto info = answer(known);

@@ -1,6 +1,7 @@
-// ImportService: from an uploaded blob to a prepared mesh, once per content. Imports run in
+// ImportService: from an uploaded blob to a prepared mesh or a picture, once per content. Imports run in
 // heliograph-import, a child process under rlimits, no_new_privs and a deadline, whose output is validated as
-// hostile. Prepared meshes are kept in memory and on disk, least recently used first out, by bytes.
+// hostile. Prepared meshes are kept in memory and on disk, pictures in
+// memory, least recently used first out, by bytes.
 //
 // Key      digest and extension of the main file, digests of every file that it asked for (or that there was
 //          none), tree. Failures that would come again are remembered too; time and memory
@@ -17,6 +18,7 @@
 #include "renderer/description/limits.h"
 #include "renderer/parallel/thread_pool.h"
 #include "renderer/plan/plan.h"
+#include "renderer/textures/image.h"
 #include "server/import/import_failure.h"
 #include "server/log/log.h"
 #include "server/store/blob_store.h"
@@ -43,7 +45,9 @@ struct ImportRequest {
     std::string digest;                       // of the main file
     std::map<std::string, std::string> files; // the job's files, name -> digest: the only names that resolve
     renderer::MeshTree tree = renderer::MeshTree::wide_sah;
+    bool is_picture = false; // is wanted; then files and tree do not count
 };
+using ImportedPixels = std::shared_ptr<const renderer::Image>;
 
 class ImportService {
 public:
@@ -61,6 +65,9 @@ public:
     // Cached or imported now. Nothing in the variant's first if `stop` was requested (mesh is null).
     std::variant<PreparedAsset, ImportFailure>
     import(const ImportRequest& request, renderer::ThreadPool& pool, const std::stop_token& stop);
+    // The same of a picture, which is decoded; null if `stop` was requested.
+    std::variant<ImportedPixels, ImportFailure>
+    picture(const std::string& name, const std::string& digest, const std::stop_token& stop);
     // A fault known from an earlier import of this very request; no work is done. For checks at POST.
     std::variant<std::monostate, ImportFailure> known_failure(const ImportRequest& request) const;
     // What GET /v1/assets/{digest}/info tells; imports (without building a BVH) if not yet known. Nothing if

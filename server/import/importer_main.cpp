@@ -1,10 +1,11 @@
-// heliograph-import NAME TRIANGLES MEMORY_BYTES OUTPUT_BYTES CPU_S: imports one mesh for heliographd, which
-// starts it.
+// heliograph-import NAME TRIANGLES TEXTURE_PIXELS MEMORY_BYTES OUTPUT_BYTES CPU_S: imports one mesh or picture
+// for heliographd, which starts it.
 //
 // Descriptors  2 log, 3 the file, 4 the output in the flat form, 5 the file desk. It opens nothing else by its
 //              own will; the kernel would let it (see lockdown.h).
-// Exit codes   0: the output holds a mesh or a failure · 2: wrong arguments · 3: it cannot lock itself down ·
+// Exit codes   0: the output holds a mesh, a picture or a failure · 2: wrong arguments · 3: it cannot lock itself down ·
 // 4: it cannot write.
+#include "renderer/io/import_image.h"
 #include "renderer/io/import_mesh.h"
 #include "server/import/file_desk.h"
 #include "server/import/flat_mesh.h"
@@ -64,14 +65,37 @@ private:
     std::map<std::string, std::optional<std::span<const std::byte>>, std::less<>> files_;
 };
 
-server::ImportOutcome import(const char* name, const renderer::Limits& limits)
+server::ImportFailure failure_of(renderer::ImportFault& fault)
+{
+    return {std::move(fault.code), std::move(fault.detail)};
+}
+
+server::ImportOutcome
+import_picture(std::string_view name, const MappedFile& file, const renderer::Limits& limits)
+{
+    renderer::ImageResult result = renderer::import_image(name, file.bytes(), limits);
+    if (auto* fault = std::get_if<renderer::ImportFault>(&result)) return failure_of(*fault);
+    auto& imported = std::get<renderer::ImportedImage>(result);
+    return within_flat_bounds(server::ImportedPicture{std::move(imported.image), std::move(imported.format)},
+                              limits);
+}
+
+server::ImportOutcome import(std::string_view name, const renderer::Limits& limits)
 try {
     const MappedFile file(kFile);
+    // Who wants a mesh is told what the file is, if it is a picture.
+    if (name.starts_with(server::kPictureWord) || renderer::looks_like_image(name, file.bytes()))
+        return import_picture(name, file, limits);
     Companions companions;
     renderer::ImportResult result = renderer::import_mesh(
         name, file.bytes(), [&](std::string_view companion) { return companions.open(companion); }, limits);
-    if (auto* fault = std::get_if<renderer::ImportFault>(&result))
-        return server::ImportFailure{std::move(fault->code), std::move(fault->detail)};
+    if (auto* fault = std::get_if<renderer::ImportFault>(&result)) {
+        if (fault->code != "unknown_format") return failure_of(*fault);
+        server::ImportOutcome as_picture = import_picture(name, file, limits);
+        const auto* failure = std::get_if<server::ImportFailure>(&as_picture);
+        return failure != nullptr && failure->code == fault->code ? failure_of(*fault)
+                                                                  : std::move(as_picture);
+    }
     auto& imported = std::get<renderer::ImportedMesh>(result);
     return within_flat_bounds(server::ImportedAsset{std::move(imported.mesh),
                                                     std::move(imported.format),
@@ -116,8 +140,9 @@ int main(int count, char** words)
 {
     renderer::Limits limits;
     std::uint64_t cpu_s = 0;
-    if (count != 6 || !parse(words[2], limits.triangles) || !parse(words[3], limits.import_memory_bytes) ||
-        !parse(words[4], limits.import_output_bytes) || !parse(words[5], cpu_s))
+    if (count != 7 || !parse(words[2], limits.triangles) || !parse(words[3], limits.texture_pixels) ||
+        !parse(words[4], limits.import_memory_bytes) || !parse(words[5], limits.import_output_bytes) ||
+        !parse(words[6], cpu_s))
         leave(2, "is started by heliographd, not by hand");
     std::string why_not;
     if (!server::lock_down({limits.import_memory_bytes, limits.import_output_bytes, cpu_s}, why_not))

@@ -46,4 +46,14 @@ api::AssetInfo::MeshInfo mesh_figures(const ImportedAsset& asset)
     return figures;
 }
 
+api::AssetInfo::ImageInfo picture_figures(const ImportedPicture& picture)
+{
+    const renderer::Image& image = picture.image;
+    return {picture.format,
+            image.width,
+            image.height,
+            image.channels,
+            static_cast<std::uint32_t>(8 * bytes_of(image.type))};
+}
+
 } // namespace server

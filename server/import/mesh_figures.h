@@ -9,4 +9,7 @@ namespace server {
 // O(triangles).
 api::AssetInfo::MeshInfo mesh_figures(const ImportedAsset& asset);
 
+// The same of a picture.
+api::AssetInfo::ImageInfo picture_figures(const ImportedPicture& picture);
+
 } // namespace server

@@ -35,8 +35,9 @@ FileDescriptor checked(int fd, const char* what)
 
 std::vector<std::string> arguments_of(const ImportRun& run, const renderer::Limits& limits)
 {
-    return {"mesh" + run.extension,
+    return {std::string(run.is_picture ? kPictureWord : "mesh") + run.extension,
             std::to_string(limits.triangles),
+            std::to_string(limits.texture_pixels),
             std::to_string(limits.import_memory_bytes),
             std::to_string(limits.import_output_bytes),
             std::to_string(limits.import_s)}; // of processor time: one thread cannot spend more
@@ -129,7 +130,7 @@ private:
         result_.repeatable = false;
         return {"import_timeout",
                 "the import took longer than " + std::to_string(run_.limits.import_s) + " s (" +
-                    api::flag_of("import_s") + "); simplify or split the mesh"};
+                    api::flag_of("import_s") + "); simplify or split the file"};
     }
 
     ImportFailure out_of_time()
@@ -139,7 +140,7 @@ private:
         return {"import_timeout",
                 "the import took " + std::to_string(allowed_.import_s) +
                     " s of processor time, more than a file of this size should (10 s + 1 s a MiB); "
-                    "simplify or split the mesh"};
+                    "simplify or split the file"};
     }
 
     ImportFailure out_of_memory()
@@ -148,7 +149,7 @@ private:
         return {"import_out_of_memory",
                 "the import needs more than " + std::to_string(allowed_.import_memory_bytes) +
                     " bytes of memory (" + allowance_words("import_memory_bytes") +
-                    "); simplify or split the mesh"};
+                    "); simplify or split the file"};
     }
 
     ImportOutcome outcome_of(const ChildProcess::End& end)

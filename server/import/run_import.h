@@ -22,6 +22,7 @@ struct ImportRun {
     std::filesystem::path program; // heliograph-import
     int file = -1;                 // open for reading
     std::string extension;         // ".obj" where the name had one: a hint for what the content does not tell
+    bool is_picture = false;       // is wanted: else a mesh is, and what the file is is told
     std::function<FileDescriptor(std::string_view name)>
         open; // companion files; called on the calling thread
     renderer::Limits limits;

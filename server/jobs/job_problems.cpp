@@ -244,4 +244,9 @@ void add_faults(const FailedMeshes& failed,
         if (!told.contains(mesh)) faults.add({"/files", failure.code, failure.detail});
 }
 
+void add_fault(const renderer::ImageReference& image, ImportFailure failure, renderer::FaultList& faults)
+{
+    faults.add({image.pointer, std::move(failure.code), std::move(failure.detail)});
+}
+
 } // namespace server

@@ -55,5 +55,7 @@ using FailedMeshes = std::map<std::uint32_t, ImportFailure>;
 void add_faults(const FailedMeshes& failed,
                 const renderer::SceneDescription& scene,
                 renderer::FaultList& faults);
+// A picture that does not import.
+void add_fault(const renderer::ImageReference& image, ImportFailure failure, renderer::FaultList& faults);
 
 } // namespace server

@@ -23,8 +23,10 @@ using Meshes = std::vector<std::shared_ptr<const renderer::PreparedMesh>>;
 struct Imported {
     Meshes meshes;
     std::vector<renderer::MeshFacts> facts; // one a mesh
-    std::vector<std::string> notes;         // of the importers, with the mesh's name
-    std::size_t more_notes = 0;             // that are counted only
+    std::vector<ImportedPixels> images;
+    std::vector<renderer::ImageFacts> image_facts; // one a picture
+    std::vector<std::string> notes;                // of the importers, with the mesh's name
+    std::size_t more_notes = 0;                    // that are counted only
 };
 
 void add_notes(const std::string& mesh, const std::vector<std::string>& notes, Imported& imported)
@@ -36,6 +38,36 @@ void add_notes(const std::string& mesh, const std::vector<std::string>& notes, I
         else
             ++imported.more_notes;
     }
+}
+
+// The picture's faults are told; false only if the run was stopped.
+bool import_pictures(const JobRun& run,
+                     const RunTools& tools,
+                     renderer::Budget& budget,
+                     Imported& imported,
+                     renderer::FaultList& faults)
+{
+    for (const renderer::ImageReference& image : run.request.scene.images) {
+        auto answer = tools.imports.picture(image.name, image.digest, run.stop);
+        if (auto* failure = std::get_if<ImportFailure>(&answer)) {
+            add_fault(image, std::move(*failure), faults);
+            continue;
+        }
+        auto& pixels = std::get<ImportedPixels>(answer);
+        if (!pixels) return false;
+        imported.image_facts.push_back(renderer::facts_of(*pixels));
+        imported.images.push_back(std::move(pixels));
+        renderer::add_image(budget, imported.image_facts.back());
+        renderer::FaultList excess;
+        renderer::check_budget(budget, tools.limits, excess);
+        if (excess.empty()) continue;
+        for (renderer::Fault& fault : excess.take()) {
+            fault.detail += ", counted up to the picture \"" + image.name + "\"";
+            faults.add(std::move(fault));
+        }
+        break;
+    }
+    return true;
 }
 
 // A mesh that takes the scene over a limit is the last one: the job never holds more than that.
@@ -76,6 +108,7 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
         break;
     }
     add_faults(failed, scene, faults);
+    if (faults.empty() && !import_pictures(run, tools, budget, imported, faults)) return StoppedRun{};
     if (!faults.empty()) return faults_problem(faults.take());
     if (imported.more_notes)
         imported.notes.push_back("and " + std::to_string(imported.more_notes) + " notes more");
@@ -136,11 +169,12 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
 
     renderer::AssumedScene scene =
         renderer::assume_defaults(run.request.scene, imported.facts, aspect_of(settings.image));
-    auto planned = renderer::make_plan(scene, imported.facts, settings, tools.limits);
+    auto planned = renderer::make_plan(scene, imported.facts, settings, tools.limits, imported.image_facts);
     if (auto* faults = std::get_if<std::vector<renderer::Fault>>(&planned))
         return faults_problem(std::move(*faults));
     const renderer::Plan plan = std::move(std::get<renderer::Plan>(planned));
-    const auto prepared = renderer::prepare(scene, plan, imported.meshes, settings, tools.pool, run.stop);
+    const auto prepared =
+        renderer::prepare(scene, plan, imported.meshes, settings, tools.pool, run.stop, imported.images);
     if (!prepared || run.stop.stop_requested()) return StoppedRun{};
 
     run.running();

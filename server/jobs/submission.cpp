@@ -25,6 +25,11 @@ std::vector<renderer::Fault> known_faults(const api::JobRequest& request, const 
     }
     renderer::FaultList faults;
     add_faults(failed, request.scene, faults);
+    for (const renderer::ImageReference& image : request.scene.images) {
+        auto known = imports.known_failure(
+            {.name = image.name, .digest = image.digest, .files = {}, .tree = {}, .is_picture = true});
+        if (auto* failure = std::get_if<ImportFailure>(&known)) add_fault(image, std::move(*failure), faults);
+    }
     return faults.take();
 }
 
@@ -44,6 +49,8 @@ std::vector<std::string> asset_digests_of(const api::JobRequest& request)
         digests.insert(digest);
     for (const renderer::MeshReference& mesh : request.scene.meshes)
         digests.insert(mesh.digest);
+    for (const renderer::ImageReference& image : request.scene.images)
+        digests.insert(image.digest);
     return {digests.begin(), digests.end()};
 }
 

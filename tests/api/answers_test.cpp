@@ -157,7 +157,7 @@ TEST(AssetAnswer, NamesTheAsset)
 
 TEST(AssetInfo, TellsMeshOrFault)
 {
-    api::AssetInfo info{"sha256:" + std::string(64, 'a'), 12, {}, {}};
+    api::AssetInfo info{"sha256:" + std::string(64, 'a'), 12, {}, {}, {}};
     checked(api::write_asset_info(info), "AssetInfo");
     info.mesh.emplace();
     info.mesh->format = "ply";

@@ -3,6 +3,7 @@
 #include "tests/assets/broken_files.h"
 #include "tests/assets/shapes.h"
 #include "tests/assets/write_files.h"
+#include "tests/assets/write_images.h"
 #include "tests/assets/write_scenes.h"
 
 #include <cstdio>
@@ -94,6 +95,7 @@ void write_all(const std::filesystem::path& folder)
                ply_strips_bytes(tests::make_sphere(0.5, 48, 24), tests::sphere_strips(48, 24)));
     write_file(folder / "terrain.ply",
                ply_bytes(tests::make_terrain(224), Encoding::binary)); // 100352 triangles
+    tests::write_images(folder / "images");
     tests::write_broken_files(folder / "broken");
 }
 

@@ -45,7 +45,7 @@ ReadyScene make_ready(const TestScene& test, ThreadPool& pool)
     if (const auto* const faults = std::get_if<std::vector<Fault>>(&plan))
         throw std::runtime_error(faults->front().pointer + ": " + faults->front().detail);
     ReadyScene ready{std::move(std::get<Plan>(plan)), nullptr};
-    ready.scene = prepare(assumed, ready.plan, prepared, test.settings, pool);
+    ready.scene = prepare(assumed, ready.plan, prepared, test.settings, pool, {}, test.images);
     return ready;
 }
 

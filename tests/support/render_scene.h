@@ -17,6 +17,7 @@ struct TestScene {
     renderer::SceneDescription description;
     std::vector<renderer::Mesh> meshes; // description.meshes is filled to match
     renderer::RenderSettings settings;
+    std::vector<renderer::SharedImage> images{}; // which materials name by their number
 };
 
 // A scene, made ready: throws std::runtime_error with the first fault's text if the plan refuses it.

@@ -126,7 +126,9 @@ TEST(ReadObj, TakesMaterialsFromItsMtl)
     EXPECT_THAT(result.mesh.materials[0].textures, testing::ElementsAre("wood grain.png"));
     EXPECT_EQ(result.mesh.materials[1].diffuse, (renderer::Rgb{0, 0, 1})); // within [0, 1]
     EXPECT_THAT(result.mesh.triangle_materials, testing::ElementsAre(2, 1, 0, 2));
-    EXPECT_THAT(result.notes, testing::ElementsAre(testing::HasSubstr("\"gone\"")));
+    EXPECT_THAT(result.notes,
+                testing::ElementsAre(testing::HasSubstr("wood grain.png did not come"),
+                                     testing::HasSubstr("\"gone\"")));
 }
 
 TEST(ReadObj, ReadsAnMtlOnceHoweverOftenItIsNamed)
@@ -185,7 +187,8 @@ TEST(ReadObj, MakesMaterialsWithoutAReadableColourGreyAndNamesThem)
         EXPECT_EQ(result.mesh.materials[i].diffuse, grey) << result.mesh.materials[i].name;
     EXPECT_EQ(result.mesh.materials[3].diffuse, (renderer::Rgb{0, 0, 0})); // said, so kept
     EXPECT_THAT(result.notes,
-                testing::ElementsAre(testing::HasSubstr("line 5"),
+                testing::ElementsAre(testing::HasSubstr("wood.png did not come"),
+                                     testing::HasSubstr("line 5"),
                                      "material file \"a.mtl\": 3 materials have no readable Kd and are grey "
                                      "(0.5): \"red\", \"wood\", \"odd\"",
                                      testing::HasSubstr("\"gone\"")));

@@ -1,5 +1,6 @@
 #include "renderer/geometry/validate_mesh.h"
 #include "server/import/flat_mesh.h"
+#include "server/import/flat_texts.h"
 
 #include <gtest/gtest.h>
 
@@ -30,6 +31,13 @@ ImportedAsset tetrahedron()
                       {"shiny", {}, {1, 1, 1}, 99, {}, true, false, true, false},
                       {"glassy", {}, {}, 0, {}, false, true, false, true}};
     mesh.parts = {{"base", 0, 1}, {"sides", 1, 3}};
+    mesh.materials[0].color_map = renderer::TextureUse{.image = 0, .wrap = renderer::TextureWrap::mirror};
+    mesh.materials[0].alpha_map = renderer::TextureUse{.image = 1, .channel = 3};
+    mesh.materials[0].cutoff = 0.25f;
+    mesh.images = {{"red.png", {1, 1, 3, renderer::PixelType::whole_8, {}}},
+                   {"bump.png", {1, 1, 1, renderer::PixelType::real_32, {}}}};
+    mesh.images[0].image.bytes.append({std::byte{9}, std::byte{8}, std::byte{7}});
+    mesh.images[1].image.bytes.append({std::byte{0}, std::byte{0}, std::byte{0}, std::byte{0x3f}}); // 0.5
     return asset;
 }
 
@@ -77,7 +85,16 @@ TEST(FlatMesh, GivesBackWhatWasWritten)
     EXPECT_EQ(asset.mesh.uvs, before.mesh.uvs);
     EXPECT_EQ(asset.mesh.triangles, before.mesh.triangles);
     EXPECT_EQ(asset.mesh.triangle_materials, before.mesh.triangle_materials);
+    ASSERT_EQ(asset.mesh.images.size(), 2u);
+    for (const std::size_t i : {0u, 1u}) {
+        EXPECT_EQ(asset.mesh.images[i].name, before.mesh.images[i].name);
+        EXPECT_EQ(asset.mesh.images[i].image.bytes, before.mesh.images[i].image.bytes);
+    }
     ASSERT_EQ(asset.mesh.materials.size(), 3u);
+    EXPECT_EQ(asset.mesh.materials[0].color_map, before.mesh.materials[0].color_map);
+    EXPECT_EQ(asset.mesh.materials[0].alpha_map, before.mesh.materials[0].alpha_map);
+    EXPECT_EQ(asset.mesh.materials[0].cutoff, 0.25f);
+    EXPECT_FALSE(asset.mesh.materials[1].color_map);
     for (const std::size_t i : {1u, 2u}) {
         EXPECT_EQ(asset.mesh.materials[i].emits, i == 1);
         EXPECT_EQ(asset.mesh.materials[i].is_transparent, i == 2);

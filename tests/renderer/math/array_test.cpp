@@ -1,4 +1,4 @@
-#include "renderer/geometry/array.h"
+#include "renderer/math/array.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
