@@ -215,3 +215,61 @@ TEST(Emitter, OfPowerHasTheRadianceThatGivesIt)
     const Emitter egg = sphere_emitter(Affine3::scale({2, 1, 1}), 1, kWhite, false).value();
     EXPECT_NEAR(egg.area, 2 * kPi * (1 + 2 / e * std::asin(e)), 1e-3);
 }
+
+TEST(Emitter, OfSquareToSquareHasTheFormFactorsOfTheCatalog)
+{
+    // Mean over a unit receiver around the origin that faces +y.
+    const auto factor = [](const Emitter& emitter) {
+        double sum = 0;
+        constexpr std::uint32_t kPoints = 4096;
+        const PixelSampler places(8, 0, 0), numbers(8, 1, 1);
+        for (std::uint32_t i = 0; i < kPoints; ++i) {
+            const Sample2 at = places.sample_2d(i, 0);
+            const Vec3d point{static_cast<double>(at.u0) - 0.5, 0, static_cast<double>(at.u1) - 0.5};
+            double one = 0;
+            for (std::uint32_t k = 0; k < 16; ++k) {
+                const EmitterSample s = sample(emitter, point, numbers.sample_2d(16 * i + k, 0));
+                if (s.distance > 0) one += std::max(0.0, s.wi.y) / s.pdf;
+            }
+            sum += one / 16;
+        }
+        return sum / kPoints / kPi;
+    };
+    EXPECT_NEAR(factor(ceiling(1, 1, {0, 1, 0})), 0.1998248957, 2e-4);
+    EXPECT_NEAR(factor(ceiling(1, 1, {0, 0.1, 0})), 0.8269945224, 8e-4);
+    EXPECT_NEAR(factor(ceiling(1, 1, {0, 10, 0})), 3.16205684e-3, 3e-6);
+    const Affine3 wall = Affine3::translate({-0.5, 0.5, 0}) * Affine3::rotate_deg(90, {0, 1, 0});
+    EXPECT_NEAR(factor(rectangle_emitter(wall, kWhite, false).value()), 0.2000437761, 3e-4);
+}
+
+TEST(Emitter, IsCutByTheHorizon)
+{
+    // Half of a wall stands below the ground: it lights as the upper half alone.
+    const auto wall = [](double height, double middle) {
+        const Affine3 placed = Affine3::translate({-2, middle, 0}) * Affine3::rotate_deg(90, {0, 1, 0}) *
+                               Affine3::scale({3, height, 1});
+        return rectangle_emitter(placed, kWhite, false).value();
+    };
+    EXPECT_NEAR(irradiance(wall(4, 0), {0, 0, 0}, {0, 1, 0}).mean,
+                irradiance(wall(2, 1), {0, 0, 0}, {0, 1, 0}).mean,
+                1e-4);
+}
+
+TEST(Emitter, AllAroundFillsTheHemisphere)
+{
+    // Six walls of a box around a point: their form factors add up to 1.
+    for (const Vec3d& point : {Vec3d{0, 0, 0}, Vec3d{0.9, -0.3, 0.4}}) {
+        double sum = 0;
+        for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+            for (const double side : {-1.0, 1.0}) {
+                const Affine3 turn = axis.x != 0   ? Affine3::rotate_deg(90, {0, 1, 0})
+                                     : axis.y != 0 ? Affine3::rotate_deg(90, {1, 0, 0})
+                                                   : Affine3{};
+                const Affine3 placed = Affine3::translate(axis * side) * turn * Affine3::scale({2, 2, 1});
+                sum += irradiance(
+                           rectangle_emitter(placed, kWhite, true).value(), point, normalize(Vec3d{1, 2, -1}))
+                           .mean;
+            }
+        EXPECT_NEAR(sum, 1, 1e-4);
+    }
+}
