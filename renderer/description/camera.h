@@ -29,7 +29,7 @@ struct CameraDescription {
     double lens_radius_m = 0; // perspective: of a thin lens; 0: a pinhole, everything sharp
     // Perspective, with a lens: along the view, to the plane that is sharp. Nothing: where it looks, a metre for a
     // direction.
-    std::optional<double> focus_distance_m;
+    std::optional<double> focus_distance_m{};
     double height_m = 1; // orthographic: of what the picture shows
     MeterQuantity quantity = MeterQuantity::radiance;
 

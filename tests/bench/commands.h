@@ -11,6 +11,7 @@ void add_evaluation(CLI::App& app);
 void add_import(CLI::App& app);
 void add_leaks(CLI::App& app);
 void add_memory(CLI::App& app);
+void add_pictures(CLI::App& app);
 void add_rays(CLI::App& app);
 void add_service(CLI::App& app);
 void add_sky(CLI::App& app);

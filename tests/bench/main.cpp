@@ -17,6 +17,7 @@ int main(int argc, char** argv)
     bench::add_service(app);
     bench::add_sky(app);
     bench::add_terrain(app);
+    bench::add_pictures(app);
     bench::add_tiles(app);
     try {
         app.parse(argc, argv);
