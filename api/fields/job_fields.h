@@ -74,6 +74,15 @@ void fields(V&, X&)
 {
 }
 
+template <typename V, Sees<renderer::ImageEnvironment> X>
+void fields(V& v, X& environment)
+{
+    v.image_of(environment.image);
+    v.number("rotation_deg", environment.rotation_deg, kTurn, "about +y, counter-clockwise seen from above");
+    v.number("scale", environment.scale, kRadiometric, "of its numbers, to W/(m^2 sr)");
+    v.needs({"image"});
+}
+
 template <typename V, Sees<renderer::ColorEnvironment> X>
 void fields(V& v, X& environment)
 {

@@ -67,7 +67,7 @@ WordTable words_for<Environment>()
 {
     static constexpr std::array words{alternative<Environment, renderer::NoEnvironment>("none"),
                                       alternative<Environment, renderer::ColorEnvironment>("color"),
-                                      Word{"image"},
+                                      alternative<Environment, renderer::ImageEnvironment>("image"),
                                       Word{"atmosphere"}};
     return words;
 }

@@ -4,6 +4,7 @@
 #include "renderer/color/rgb.h"
 #include "renderer/math/affine.h"
 
+#include <cstdint>
 #include <optional>
 #include <variant>
 
@@ -65,6 +66,12 @@ struct ColorEnvironment {
     Rgb radiance{1, 1, 1}; // W/(m^2 sr), the same from everywhere
     friend bool operator==(const ColorEnvironment&, const ColorEnvironment&) = default;
 };
-using Environment = std::variant<NoEnvironment, ColorEnvironment>;
+struct ImageEnvironment {    // equirectangular: its centre column lies along -z, its top row at +y
+    std::uint32_t image = 0; // index into SceneDescription::images
+    double rotation_deg = 0; // about +y, counter-clockwise seen from above
+    double scale = 1;        // of its numbers, to W/(m^2 sr)
+    friend bool operator==(const ImageEnvironment&, const ImageEnvironment&) = default;
+};
+using Environment = std::variant<NoEnvironment, ColorEnvironment, ImageEnvironment>;
 
 } // namespace renderer

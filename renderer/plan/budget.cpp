@@ -62,6 +62,9 @@ std::string refused(std::uint64_t value, const std::string& what, const char* li
            std::to_string(limit);
 }
 
+// Radiance and running sums: see lights/environment_map.h.
+constexpr std::uint64_t kEnvironmentBytesPerPixel = 24;
+
 } // namespace
 
 std::uint64_t tree_bytes(std::uint64_t triangles)
@@ -108,6 +111,11 @@ Budget predict(const SceneDescription& scene,
     b.building_bytes = scene.objects.size() * kInstanceBuildingBytes;
     for (const MeshFacts& facts : meshes)
         add_mesh(b, facts);
+    if (const auto* const sky =
+            scene.environment ? std::get_if<ImageEnvironment>(&*scene.environment) : nullptr;
+        sky != nullptr && sky->image < images.size())
+        b.texture_bytes +=
+            std::uint64_t{images[sky->image].width} * images[sky->image].height * kEnvironmentBytesPerPixel;
     for (const ImageFacts& facts : images)
         add_image(b, facts);
     if (settings.acceleration.levels == BvhLevels::none)

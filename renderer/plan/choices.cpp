@@ -24,7 +24,7 @@ struct Census {
     std::set<std::uint32_t> shown_meshes;                            // with materials of their own
     std::size_t emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
     std::size_t point = 0, spot = 0, directional = 0, sun = 0, area = 0;
-    bool sky = false;
+    bool sky = false, sky_picture = false;
 };
 
 template <typename T, typename Variant>
@@ -86,6 +86,7 @@ Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshe
         c.sun += is_a<SunLight>(light);
         c.area += shape_of(light) ? 1u : 0u;
     }
+    c.sky_picture = scene.environment && std::holds_alternative<ImageEnvironment>(*scene.environment);
     c.sky = scene.environment && std::holds_alternative<ColorEnvironment>(*scene.environment);
     return c;
 }
@@ -271,12 +272,16 @@ private:
         if (transport_.picks_lights)
             use("light_tree",
                 "lights are many: one is picked for each point, likelier the more it may send there");
-        if (c_.sky)
+        if (c_.sky_picture)
+            use("environment_image",
+                "a picture all around is background and light: one shadow ray a point, drawn by what it "
+                "gives");
+        else if (c_.sky)
             use("environment_light",
                 "the environment's colour is background and light: one ray a sample, drawn by the material");
         else
             skip("environment_light", "the environment is none");
-        if (all == 0 && !c_.sky)
+        if (all == 0 && !c_.sky && !c_.sky_picture)
             skip("lights",
                  "the scene has no light and says that its environment is none: nothing but what surfaces "
                  "give "

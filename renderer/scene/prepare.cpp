@@ -330,6 +330,29 @@ Media media_around(Vec3d point,
     return media;
 }
 
+// A picture of all around, texel by texel.
+std::shared_ptr<const EnvironmentMap> environment_map(const SceneDescription& scene,
+                                                      std::span<const SharedImage> images)
+{
+    const auto* const told = scene.environment ? std::get_if<ImageEnvironment>(&*scene.environment) : nullptr;
+    if (told == nullptr) return nullptr;
+    const SharedImage& image = images[told->image];
+    const Texture texture(image, encoding_of(TextureUse{}, *image, true), false);
+    std::vector<Rgb> texels;
+    texels.reserve(image->pixels());
+    const auto light = [told](float number) {
+        return static_cast<float>(std::max(0.0, static_cast<double>(number) * told->scale));
+    };
+    for (std::uint32_t y = 0; y < image->height; ++y)
+        for (std::uint32_t x = 0; x < image->width; ++x) {
+            const TexturePoint at{(x + 0.5) / image->width, 1 - (y + 0.5) / image->height};
+            const Rgb c = texture.lookup(at, TextureWrap::clamp, TextureFilter::nearest, {}).color;
+            texels.push_back({light(c.r), light(c.g), light(c.b)});
+        }
+    return std::make_shared<const EnvironmentMap>(
+        image->width, image->height, std::move(texels), told->rotation_deg);
+}
+
 Rgb environment_of(const SceneDescription& scene)
 {
     const auto* const color =
@@ -368,7 +391,7 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                                       std::move(tree),
                                                       std::move(made.lights),
                                                       environment_of(description),
-                                                      nullptr,
+                                                      environment_map(description, images),
                                                       std::move(made.bsdfs),
                                                       std::move(made.held),
                                                       made.geometry,

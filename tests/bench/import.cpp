@@ -93,6 +93,7 @@ server::ImportRunEnd import_in_child(const std::string& path)
     auto end = server::run_import({program,
                                    file.get(),
                                    std::filesystem::path(path).extension(),
+                                   false,
                                    [](std::string_view) { return server::FileDescriptor(); },
                                    limits,
                                    std::filesystem::file_size(path)},

@@ -44,7 +44,7 @@ protected:
             return FileDescriptor(
                 ::open(folder_.write("companion", companion->second).c_str(), O_RDONLY | O_CLOEXEC));
         };
-        return server::run_import({program_, main.get(), extension, open, limits_, bytes_}, stop);
+        return server::run_import({program_, main.get(), extension, false, open, limits_, bytes_}, stop);
     }
 
     std::string code(const server::ImportRunEnd& end) const
