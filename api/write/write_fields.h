@@ -4,6 +4,7 @@
 #pragma once
 
 #include "api/fields/ranges.h"
+#include "api/fields/texture_fields.h"
 #include "api/job_request.h"
 #include "api/json/json.h"
 #include "api/words/word_table.h"

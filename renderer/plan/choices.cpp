@@ -70,7 +70,9 @@ void count_object(Census& c,
         c.metal += facts->metal_materials;
         c.rough += facts->rough_materials;
     }
-    ++(facts->has_specular ? c.materials.phong_normalized : c.materials.diffuse);
+    ++(facts->physical_materials > 0 ? c.materials.cook_torrance
+       : facts->has_specular         ? c.materials.phong_normalized
+                                     : c.materials.diffuse);
 }
 
 Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshes)

@@ -46,8 +46,9 @@ MeshFacts facts_of(const Mesh& mesh)
         const MeshMaterial& material = mesh.materials[i];
         facts.emissive_materials += material.emits;
         facts.transparent_materials += material.is_transparent;
-        facts.metal_materials += material.is_metal;
-        facts.rough_materials += material.has_roughness;
+        facts.metal_materials += material.is_metal && !material.is_physical;
+        facts.rough_materials += material.has_roughness && !material.is_physical;
+        facts.physical_materials += material.is_physical;
         facts.cutouts += material.cutoff > 0;
         facts.normal_mapped += material.normal_map.has_value();
     }

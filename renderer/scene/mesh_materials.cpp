@@ -1,13 +1,33 @@
 #include "renderer/scene/mesh_materials.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 
 namespace renderer {
 
 namespace {
 
+// glTF's: metallic in the blue of its picture, roughness in the green.
+Material physical(const MeshMaterial& m)
+{
+    const auto channel_of = [&m](std::uint8_t channel) {
+        std::optional<TextureUse> use = m.physical_map;
+        if (use) use->channel = channel;
+        return use;
+    };
+    CookTorranceMaterial out;
+    out.base_color = {m.diffuse, m.color_map};
+    out.metallic = {static_cast<double>(m.metallic), channel_of(2)};
+    out.roughness = {static_cast<double>(m.roughness), channel_of(1)};
+    out.ior = static_cast<double>(m.ior);
+    out.surface.two_sided = m.two_sided;
+    return out;
+}
+
 Material plain(const MeshMaterial& m)
 {
+    if (m.is_physical) return physical(m);
     if (is_black(m.specular) || !(m.shininess > 0)) {
         DiffuseMaterial diffuse;
         diffuse.color = {m.diffuse, m.color_map};

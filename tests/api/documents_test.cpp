@@ -115,8 +115,10 @@ TEST(Capabilities, ListTheWordsThatTheReaderTakes)
         EXPECT_TRUE(takes(scene(R"("materials": {"m": {"type": )" + name.dump() + "}}"))) << name;
     for (const json& name : models["lights"])
         EXPECT_TRUE(takes(scene(R"("lights": [{"type": )" + name.dump() + "}]"))) << name;
-    for (const json& name : models["environments"])
-        EXPECT_TRUE(takes(scene(R"("environment": {"type": )" + name.dump() + "}"))) << name;
+    for (const json& name : models["environments"]) {
+        const std::string picture = name == "image" ? R"(, "image": "sky.hdr")" : "";
+        EXPECT_TRUE(takes(scene(R"("environment": {"type": )" + name.dump() + picture + "}"))) << name;
+    }
     for (const json& name : models["transports"])
         EXPECT_TRUE(takes(scene(R"("transport": {"type": )" + name.dump() + "}"))) << name;
     for (const json& name : models["cameras"])

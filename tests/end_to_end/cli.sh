@@ -32,7 +32,7 @@ equal 0 "$(code_of env HELIOGRAPH_URL="$HEALTH" "$helio" health --quiet)" "healt
 "$helio" render scenes/scene.json -o local.png
 equal 0 "$(code_of "$helio" run scenes/scene.json -o remote.png)" "run: $(cat err)"
 cmp local.png remote.png || fail "run and render differ"
-equal 5 "$(grep -c uploaded err)" "uploads of the first run (2 meshes with one companion each, 1 without)"
+equal 6 "$(grep -c uploaded err)" "uploads of the first run (3 meshes, with 3 companions)"
 equal 0 "$(code_of "$helio" run scenes/scene.json -o again.png --force)" "run --force"
 equal 0 "$(grep -c uploaded err)" "uploads of the second run"
 cmp local.png again.png || fail "run --force differs"

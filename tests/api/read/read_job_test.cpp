@@ -212,7 +212,7 @@ TEST(ReadJob, SaysWhatIsAvailableInsteadOfWhatIsNot)
     EXPECT_EQ(problem->code, "unsupported");
     ASSERT_EQ(problem->errors.size(), 1u);
     EXPECT_EQ(problem->errors[0].detail,
-              "\"atmosphere\" is not available in this build; available: none, color");
+              "\"atmosphere\" is not available in this build; available: none, color, image");
 }
 
 TEST(ReadJob, TellsRanges)

@@ -78,8 +78,8 @@ TEST_F(RunImport, ImportsAMeshWithTheFilesThatItNames)
     EXPECT_EQ(asset.format, "obj");
     EXPECT_EQ(asset.mesh.triangles.size(), 1u);
     EXPECT_EQ(asset.mesh.materials[0].diffuse, (renderer::Rgb{1, 0, 0}));
-    EXPECT_THAT(asset.notes, testing::ElementsAre(testing::HasSubstr("b.mtl")));
-    EXPECT_THAT(asked_, testing::ElementsAre("a.mtl", "b.mtl")); // each once
+    EXPECT_THAT(asset.notes, testing::ElementsAre(testing::HasSubstr("red.png"), testing::HasSubstr("b.mtl")));
+    EXPECT_THAT(asked_, testing::ElementsAre("a.mtl", "red.png", "b.mtl")); // each once
     EXPECT_GT(end.peak_bytes, 0u);
     EXPECT_TRUE(end.repeatable);
 }
@@ -156,7 +156,7 @@ TEST_F(RunImport, StopsAnImportThatTakesTooMuchMemory)
 TEST_F(RunImport, GivesAChildNoMoreThanItsFilesJustify)
 {
     bytes_ = 1u << 20;
-    misbehave("echo $2 $3 $4 $5 >&2; exit 7");
+    misbehave("echo $2 $4 $5 $6 >&2; exit 7");
     EXPECT_EQ(run(kTriangle).log, "50000000 281018368 281018368 11\n");
 }
 
@@ -212,7 +212,7 @@ TEST_F(RunImport, KillsAChildThatDoesNotEnd)
 TEST_F(RunImport, GivesTheChildAllTheTimeThatTheLimitNames)
 {
     limits_.import_s = 7200;
-    misbehave("echo cpu_s=$5 >&2; exit 7");
+    misbehave("echo cpu_s=$6 >&2; exit 7");
     EXPECT_THAT(run(kTriangle).log, testing::HasSubstr("cpu_s=7200"));
 }
 
