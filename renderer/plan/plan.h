@@ -46,7 +46,7 @@ struct MeshFacts {
     std::uint32_t normal_mapped = 0; // materials with normal maps
     // Materials that some triangle has, by what of theirs is not modelled.
     std::uint32_t emissive_materials = 0, transparent_materials = 0, metal_materials = 0, rough_materials = 0;
-    std::uint32_t physical_materials = 0; // glTF's, shaded as Cook-Torrance
+    std::uint32_t physical_materials = 0;   // glTF's, shaded as Cook-Torrance
     std::map<std::string, PartFacts> parts; // by name; of several of one name, the first
 };
 MeshFacts facts_of(const Mesh& mesh);

@@ -78,7 +78,8 @@ TEST_F(RunImport, ImportsAMeshWithTheFilesThatItNames)
     EXPECT_EQ(asset.format, "obj");
     EXPECT_EQ(asset.mesh.triangles.size(), 1u);
     EXPECT_EQ(asset.mesh.materials[0].diffuse, (renderer::Rgb{1, 0, 0}));
-    EXPECT_THAT(asset.notes, testing::ElementsAre(testing::HasSubstr("red.png"), testing::HasSubstr("b.mtl")));
+    EXPECT_THAT(asset.notes,
+                testing::ElementsAre(testing::HasSubstr("red.png"), testing::HasSubstr("b.mtl")));
     EXPECT_THAT(asked_, testing::ElementsAre("a.mtl", "red.png", "b.mtl")); // each once
     EXPECT_GT(end.peak_bytes, 0u);
     EXPECT_TRUE(end.repeatable);
