@@ -87,7 +87,7 @@ void JobHandlers::add_routes(Router& router)
                         (this->*handle)(exchange);
                     }});
     };
-    route("POST", "/v1/jobs", &JobHandlers::submit);
+    route("POST", "/v1/jobs", &JobHandlers::submit, {"dry_run"});
     router.add({"GET", "/v1/jobs", list_query_keys(), [this](Exchange& exchange) { list(exchange); }});
     route("GET", "/v1/jobs/{id}", &JobHandlers::get);
     route("DELETE", "/v1/jobs/{id}", &JobHandlers::remove);
@@ -126,6 +126,17 @@ std::optional<api::JobView> JobHandlers::wait(Exchange& exchange,
     }
 }
 
+// Imports may take their time, and this thread with it: it counts as waiting.
+void JobHandlers::plan(Exchange& exchange, const SubmitWords& words)
+{
+    const auto place = waiters_.enter();
+    if (!place) return reply_problem(exchange, too_many_waiters(limits_));
+    auto planned = jobs_.plan(words, {});
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&planned))
+        return reply_problem(exchange, std::move(*refusal));
+    reply_json(exchange, 200, std::get<std::string>(planned));
+}
+
 void JobHandlers::submit(Exchange& exchange)
 {
     const Acceptance accept = read_accept(exchange.header("Accept"));
@@ -133,6 +144,13 @@ void JobHandlers::submit(Exchange& exchange)
     auto read = read_submit_words(exchange, store_, blobs_, limits_);
     if (auto* refusal = std::get_if<api::ProblemDetails>(&read))
         return reply_problem(exchange, std::move(*refusal));
+    if (const auto dry_run = exchange.query("dry_run"); dry_run && *dry_run != "false") {
+        if (*dry_run != "true")
+            return reply_problem(
+                exchange,
+                query_problem("out_of_range", "dry_run=" + printable(*dry_run) + ": true or false"));
+        return plan(exchange, std::get<SubmitWords>(read));
+    }
     std::optional<Waiters::Place> place;
     std::uint64_t seconds = 0;
     if (!enter_wait(exchange, place, seconds)) return;

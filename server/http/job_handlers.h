@@ -27,6 +27,7 @@ public:
 
 private:
     void submit(Exchange& exchange);
+    void plan(Exchange& exchange, const SubmitWords& words);
     void answer_submitted(Exchange& exchange, const SubmitAnswer& answer, bool waited);
     void list(Exchange& exchange);
     void get(Exchange& exchange);

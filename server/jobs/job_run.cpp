@@ -149,6 +149,28 @@ JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, const ren
     return outcome;
 }
 
+struct Planned {
+    Imported imported;
+    renderer::AssumedScene scene;
+    renderer::Plan plan;
+};
+
+std::variant<Planned, api::ProblemDetails, StoppedRun> planned(const JobRun& run, const RunTools& tools)
+{
+    const renderer::RenderSettings& settings = run.request.settings;
+    auto answer = import_meshes(run, tools);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&answer)) return std::move(*problem);
+    if (std::holds_alternative<StoppedRun>(answer)) return StoppedRun{};
+    Imported imported = std::move(std::get<Imported>(answer));
+
+    renderer::AssumedScene scene =
+        renderer::assume_defaults(run.request.scene, imported.facts, aspect_of(settings.image));
+    auto plan = renderer::make_plan(scene, imported.facts, settings, tools.limits, imported.image_facts);
+    if (auto* faults = std::get_if<std::vector<renderer::Fault>>(&plan))
+        return faults_problem(std::move(*faults));
+    return Planned{std::move(imported), std::move(scene), std::move(std::get<renderer::Plan>(plan))};
+}
+
 bool fails_on(const api::JobRequest& request, const char* what)
 {
     return std::find(request.fail_on.begin(), request.fail_on.end(), what) != request.fail_on.end();
@@ -162,17 +184,10 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     const auto begun = Clock::now();
     const renderer::RenderSettings& settings = run.request.settings;
 
-    auto answer = import_meshes(run, tools);
+    auto answer = planned(run, tools);
     if (auto* problem = std::get_if<api::ProblemDetails>(&answer)) return std::move(*problem);
     if (std::holds_alternative<StoppedRun>(answer)) return StoppedRun{};
-    const Imported imported = std::move(std::get<Imported>(answer));
-
-    renderer::AssumedScene scene =
-        renderer::assume_defaults(run.request.scene, imported.facts, aspect_of(settings.image));
-    auto planned = renderer::make_plan(scene, imported.facts, settings, tools.limits, imported.image_facts);
-    if (auto* faults = std::get_if<std::vector<renderer::Fault>>(&planned))
-        return faults_problem(std::move(*faults));
-    const renderer::Plan plan = std::move(std::get<renderer::Plan>(planned));
+    auto& [imported, scene, plan] = std::get<Planned>(answer);
     const auto prepared =
         renderer::prepare(scene, plan, imported.meshes, settings, tools.pool, run.stop, imported.images);
     if (!prepared || run.stop.stop_requested()) return StoppedRun{};
@@ -186,6 +201,16 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     const std::uint64_t non_finite = rendered->report.numerics.non_finite_samples;
     if (non_finite != 0 && fails_on(run.request, "non_finite")) return non_finite_problem(non_finite);
     return picture_of(run, std::move(scene), *rendered);
+}
+
+std::variant<renderer::PlanReport, api::ProblemDetails, StoppedRun> plan_job(const JobRun& run,
+                                                                             const RunTools& tools)
+{
+    auto answer = planned(run, tools);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&answer)) return std::move(*problem);
+    if (std::holds_alternative<StoppedRun>(answer)) return StoppedRun{};
+    renderer::Plan& plan = std::get<Planned>(answer).plan;
+    return renderer::PlanReport{std::move(plan.models), plan.prediction};
 }
 
 } // namespace server

@@ -39,4 +39,8 @@ struct StoppedRun {};
 // The outcome but for its time; or why the job fails; or that `stop` was requested.
 std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& run, const RunTools& tools);
 
+// The plan alone, which needs the meshes imported: nothing is rendered.
+std::variant<renderer::PlanReport, api::ProblemDetails, StoppedRun> plan_job(const JobRun& run,
+                                                                             const RunTools& tools);
+
 } // namespace server

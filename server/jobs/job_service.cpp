@@ -2,6 +2,7 @@
 
 #include "server/jobs/clock.h"
 #include "server/jobs/job_problems.h"
+#include "server/jobs/job_run.h"
 #include "server/jobs/job_views.h"
 #include "server/jobs/live_jobs.h"
 #include "server/jobs/result_keeper.h"
@@ -155,6 +156,24 @@ std::variant<SubmitAnswer, api::ProblemDetails> JobService::submit(const SubmitW
     return SubmitAnswer{
         view_of(submitted.job, now.job, waits ? s.store.queue_position(submitted.job.id) : std::nullopt),
         submitted.status == SubmitStatus::replayed};
+}
+
+std::variant<std::string, api::ProblemDetails> JobService::plan(const SubmitWords& words,
+                                                                const std::stop_token& stop)
+{
+    State& s = *state_;
+    if (s.draining) return draining_problem();
+    auto read = read_submission(words, s.options.limits, s.blobs, s.imports);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&read)) return std::move(*problem);
+    const SubmitRequest& stored = std::get<Submission>(read).request;
+    const auto again = api::read_job(stored.spec.request_json, context_of_stored(s.options.limits));
+    if (const auto* problem = std::get_if<api::ProblemDetails>(&again)) return *problem;
+    renderer::ThreadPool pool(1); // the render's own has its hands full
+    const JobRun run{stored.id, stored.spec.render_key, std::get<api::JobRequest>(again), stop, {}, {}};
+    auto planned = plan_job(run, {s.imports, pool, s.options.limits});
+    if (auto* problem = std::get_if<api::ProblemDetails>(&planned)) return std::move(*problem);
+    if (std::holds_alternative<StoppedRun>(planned)) return draining_problem();
+    return api::write_plan(std::get<renderer::PlanReport>(planned));
 }
 
 std::optional<api::JobView> JobService::State::view(const JobId& id, const std::optional<LiveJob>& live_job)

@@ -67,6 +67,10 @@ public:
 
     // 400, 413, 422, 429 queue_full, 503 draining or storage_full as ProblemDetails.
     std::variant<SubmitAnswer, api::ProblemDetails> submit(const SubmitWords& words);
+    // What the job would need, as JSON text: nothing is stored or queued. Imports what it names, on the calling
+    // thread, until `stop`.
+    std::variant<std::string, api::ProblemDetails> plan(const SubmitWords& words,
+                                                        const std::stop_token& stop);
     std::optional<api::JobView> get(const JobId& id);
     // Waits until the job is final or, with `known_etag`, until its view changes; at most `timeout`.
     std::optional<api::JobView>

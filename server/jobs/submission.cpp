@@ -90,4 +90,14 @@ std::variant<Submission, api::ProblemDetails> read_submission(const SubmitWords&
     return submission;
 }
 
+// The limits of JSON were held when the request came; written out with every default it is longer, and has
+// more values and other depths than it had.
+api::ReadContext context_of_stored(renderer::Limits limits)
+{
+    limits.json_bytes = limits.json_values = limits.json_depth = std::numeric_limits<std::uint64_t>::max();
+    api::ReadContext context;
+    context.limits = limits;
+    return context;
+}
+
 } // namespace server

@@ -21,4 +21,7 @@ std::variant<Submission, api::ProblemDetails> read_submission(const SubmitWords&
                                                               const BlobStore& blobs,
                                                               const ImportService& imports);
 
+// What a stored job is read again under: its files are where they were when it was accepted.
+api::ReadContext context_of_stored(renderer::Limits limits);
+
 } // namespace server

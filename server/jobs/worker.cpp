@@ -5,6 +5,7 @@
 #include "server/jobs/job_problems.h"
 #include "server/jobs/job_run.h"
 #include "server/jobs/sharing.h"
+#include "server/jobs/submission.h"
 
 #include <algorithm>
 #include <chrono>
@@ -20,16 +21,6 @@ namespace {
 // One process owns the store, and a lease dies with it: no lease runs out while its worker lives.
 constexpr std::chrono::hours kLeaseTime{24 * 365};
 constexpr std::chrono::hours kLongWait{1};
-
-// The limits of JSON were held when the request came; written out with every default it is longer, and has
-// more values and other depths than it had.
-api::ReadContext context_of_stored(renderer::Limits limits)
-{
-    limits.json_bytes = limits.json_values = limits.json_depth = std::numeric_limits<std::uint64_t>::max();
-    api::ReadContext context;
-    context.limits = limits;
-    return context;
-}
 
 } // namespace
 

@@ -16,6 +16,7 @@ namespace {
 using tests::bytes_of;
 using tests::code_of;
 using tests::fetch;
+using tests::Headers;
 using tests::json_of;
 using tests::LiveService;
 using tests::long_job;
@@ -52,6 +53,23 @@ TEST(Jobs, AreAcceptedFollowedAndSeen)
     EXPECT_EQ(image.body.rfind(kPngMagic, 0), 0u);
     EXPECT_EQ(service.get("/v1/jobs/" + id + "/report").status, 200);
     EXPECT_EQ(service.get("/v1/jobs/" + id + "/scene").status, 200);
+}
+
+TEST(Jobs, AskedForTheirPlanAloneAreNeitherStoredNorRendered)
+{
+    const LiveService service;
+    const Headers is_json{{"Content-Type", "application/json"}};
+    const auto plan = service.post("/v1/jobs?dry_run=true", quick_job(), is_json);
+    ASSERT_EQ(plan.status, 200) << plan.body;
+    const auto told = json_of(plan);
+    EXPECT_FALSE(told.at("models").at("used").empty());
+    EXPECT_GT(told.at("prediction").at("camera_rays").get<double>(), 0);
+    EXPECT_GT(told.at("prediction").at("memory_bytes").get<double>(), 0);
+    EXPECT_TRUE(json_of(service.get("/v1/jobs")).at("jobs").empty());
+
+    EXPECT_EQ(service.post("/v1/jobs?dry_run=true", "{}", is_json).status, 422);
+    EXPECT_EQ(service.post("/v1/jobs?dry_run=perhaps", quick_job(), is_json).status, 422);
+    EXPECT_EQ(service.post("/v1/jobs?dry_run=false", quick_job(), is_json).status, 202);
 }
 
 TEST(Jobs, WaitedForComeFinished)
@@ -305,7 +323,7 @@ TEST(Jobs, ListingSaysWhatIsWrongWithItsQuery)
     EXPECT_NE(all.body.find("running"), std::string::npos);
     EXPECT_EQ(service.get("/v1/jobs?limit=1&limit=2").status, 422);
     EXPECT_EQ(service.get("/v1/jobs?cursor=not-one-of-ours").status, 422);
-    EXPECT_EQ(service.post("/v1/jobs?dry_run=true", quick_job()).status, 422);
+    EXPECT_EQ(service.post("/v1/jobs?dryrun=true", quick_job()).status, 422);
     EXPECT_EQ(service.get("/v1/version?").status, 200);
 }
 

@@ -201,6 +201,10 @@ TEST_F(OpenApi, DescribesWhatSubmissionsAnswer)
         headers.insert(headers.begin(), {"Content-Type", "application/json"});
         return ask(jobs, "POST", jobs, headers, body).status;
     };
+    EXPECT_EQ(
+        ask(jobs, "POST", jobs + "?dry_run=true", {{"Content-Type", "application/json"}}, tests::quick_job())
+            .status,
+        200);
     EXPECT_EQ(submit(tests::quick_job(7)), 202);
     EXPECT_EQ(submit(tests::quick_job(7), {{"Prefer", "wait=30"}}), 200);
     EXPECT_EQ(submit(tests::quick_job(7), {{"Prefer", "wait=30"}, {"Accept", "image/png"}}), 200);
