@@ -102,9 +102,12 @@ void DirectLighting::gather(std::span<const LitPoint> points, std::span<Rgb> add
     };
     for (const PreparedLight& light : scene_.lights())
         for_all([&](const LitPoint& point, std::size_t i) { add_delta(point, i, light, 1); });
+    // Of very many suns some share their numbers, which does no harm: each is sampled rightly.
+    constexpr std::uint32_t kMostNumbers =
+        kOfScattering - static_cast<std::uint32_t>(ScatteringDimension::listed);
     std::uint32_t listed = 0;
     for (const Sun& sun : scene_.suns()) {
-        const std::uint32_t number = listed++;
+        const std::uint32_t number = listed++ % kMostNumbers;
         for_all([&](const LitPoint& point, std::size_t i) {
             const Vec3d wi = sample(
                 sun, point.of->two(dimension_of(point.scattering, ScatteringDimension::listed, number)));
@@ -113,7 +116,7 @@ void DirectLighting::gather(std::span<const LitPoint> points, std::span<Rgb> add
     }
     if (scene_.light_tree().empty()) {
         for (const Emitter& emitter : scene_.emitters()) {
-            const std::uint32_t number = listed++;
+            const std::uint32_t number = listed++ % kMostNumbers;
             for_all([&](const LitPoint& point, std::size_t i) {
                 const Sample2 u =
                     point.of->two(dimension_of(point.scattering, ScatteringDimension::listed, number));

@@ -16,12 +16,14 @@ constexpr std::uint64_t kMostAsked = 4;
 
 // What decides: counted in objects, but for lights.
 struct Kinds {
-    std::size_t mirrors = 0, panes = 0, physical = 0, empirical = 0;
-    std::size_t shapes = 0;     // all objects
-    std::size_t not_convex = 0; // that may light themselves
-    std::uint64_t emitters = 0; // pieces of surfaces that shine
-    std::uint64_t placed = 0;   // point and spot lights
-    std::size_t extended = 0;   // suns
+    std::size_t physical = 0, empirical = 0; // the rest: mirrors and smooth glass
+    std::size_t glass = 0;                   // smooth or rough
+    std::size_t sharp = 0;                   // may send light a single way: no light can be asked for it
+    std::size_t shapes = 0;                  // all objects
+    std::size_t not_convex = 0;              // that may light themselves
+    std::uint64_t emitters = 0;              // pieces of surfaces that shine
+    std::uint64_t placed = 0;                // point and spot lights
+    std::size_t extended = 0;                // suns
     bool sky = false, sky_varies = false;
 };
 
@@ -58,22 +60,35 @@ private:
         if (mesh != nullptr) ++kinds_.not_convex;
         if (!object.material) {
             ++kinds_.physical; // the default, or a mesh's own
-            if (mesh != nullptr && meshes_[mesh->mesh].emissive_materials != 0)
-                kinds_.emitters += meshes_[mesh->mesh].triangles; // which ones is known later
+            if (mesh != nullptr && meshes_[mesh->mesh].physical_materials != 0) ++kinds_.sharp;
             return;
         }
         const Material& material = scene_.materials[*object.material].material;
-        if (std::holds_alternative<PhongMaterial>(material))
-            ++kinds_.empirical;
-        else if (std::holds_alternative<MirrorMaterial>(material))
-            ++kinds_.mirrors;
-        else if (const auto* const glass = std::get_if<GlassMaterial>(&material);
-                 glass != nullptr && glass->roughness.value < kSmoothBelow && !glass->roughness.texture)
-            ++kinds_.panes;
-        else if (std::holds_alternative<EmitterMaterial>(material))
+        if (std::holds_alternative<EmitterMaterial>(material)) {
             kinds_.emitters += pieces(object.shape);
-        else
+        } else if (std::holds_alternative<PhongMaterial>(material)) {
+            ++kinds_.empirical;
+        } else if (std::holds_alternative<MirrorMaterial>(material)) {
+            ++kinds_.sharp;
+        } else if (const auto* const glass = std::get_if<GlassMaterial>(&material)) {
+            ++kinds_.glass;
+            ++kinds_.sharp;
+            if (!is_smooth(glass->roughness) || glass->roughness.texture) ++kinds_.physical;
+        } else {
             ++kinds_.physical;
+            const TexturedNumber* const roughness = roughness_of(material);
+            if (roughness != nullptr && (is_smooth(*roughness) || roughness->texture)) ++kinds_.sharp;
+        }
+    }
+
+    static bool is_smooth(const TexturedNumber& roughness) { return roughness.value < kSmoothBelow; }
+
+    static const TexturedNumber* roughness_of(const Material& material)
+    {
+        if (const auto* const metal = std::get_if<ConductorMaterial>(&material)) return &metal->roughness;
+        if (const auto* const varnish = std::get_if<CookTorranceMaterial>(&material))
+            return &varnish->roughness;
+        return nullptr;
     }
 
     void count(const Light& light)
@@ -132,22 +147,24 @@ private:
     }
 
     bool lights_have_extent() const { return k_.emitters != 0 || k_.extended != 0 || k_.sky_varies; }
-    bool has_delta() const { return k_.mirrors + k_.panes != 0; }
-    // Nothing is lit by anything else: one convex body, or none.
-    bool is_alone() const { return k_.shapes + (k_.emitters != 0 ? 1 : 0) <= 1 && k_.not_convex == 0; }
+    bool is_sharp() const { return k_.sharp != 0; }
+    // Nothing is lit by anything else, nor by itself from within: one convex body, not of glass, or none.
+    bool is_alone() const
+    {
+        return k_.shapes + (k_.emitters != 0 ? 1 : 0) <= 1 && k_.not_convex == 0 && k_.glass == 0;
+    }
 
     void automatic()
     {
         if (k_.physical == 0 && !lights_have_extent()) {
-            if (has_delta())
+            if (is_sharp())
                 return whitted("every material is of the classic models, every light without extent: that is "
                                "Whitted's definition, and has no noise inside surfaces");
             return direct(k_.empirical == 0
                               ? "there is no surface that light could be scattered by twice"
                               : "every material is Phong's, which is defined by direct light alone");
         }
-        if (is_alone() && !has_delta())
-            return direct("a single convex surface: nothing else is there that could light it");
+        if (is_alone()) return direct("a single convex surface: nothing else is there that could light it");
         path(k_.physical != 0 ? "surfaces light one another"
                               : "lights have extent, and mirrors and glass show them");
     }
@@ -155,7 +172,7 @@ private:
     void direct(std::string why)
     {
         out_.max_depth = asked_.max_depth.value_or(1) == 0 ? 0 : 1;
-        const bool is_short = !lights_have_extent() && !has_delta() && out_.max_depth == 1;
+        const bool is_short = !lights_have_extent() && !is_sharp() && out_.max_depth == 1;
         out_.integrator = is_short ? Integrator::direct : Integrator::path;
         out_.picks_lights = k_.emitters > kMostAsked;
         use("direct", std::move(why));
@@ -175,7 +192,7 @@ private:
                 " scatterings");
         skip("indirect_light",
              "light from one surface onto another is not followed but by mirrors and glass");
-        if (k_.panes != 0) skip("caustics", "light that glass or mirrors gather on a surface is not found");
+        if (k_.glass != 0) skip("caustics", "light that glass or mirrors gather on a surface is not found");
     }
 
     void path(std::string why)
@@ -191,7 +208,7 @@ private:
             "after three scatterings a path goes on by chance, in proportion to what it carries");
         if (lights_have_extent())
             use("multiple_importance_sampling", "lights are asked and also found by the material's own rays");
-        if (has_delta() && !lights_have_extent())
+        if (is_sharp() && !lights_have_extent())
             skip("caustics",
                  "lights without extent cannot be met by chance: their light through glass or by mirrors "
                  "onto other surfaces is not found");

@@ -1,6 +1,7 @@
 // Light that is scattered many times, against closed forms.
 #include "renderer/integrators/path.h"
 #include "renderer/math/transcendental.h"
+#include "tests/support/picture_error.h"
 #include "tests/support/render_scene.h"
 
 #include <gtest/gtest.h>
@@ -298,4 +299,36 @@ TEST(Path, FindsTheSameLightByAskingLightsByTheMaterialsRaysAndByBoth)
         EXPECT_LT(both.second, 0.02 * both.first) << number;
         ++number;
     }
+}
+
+TEST(Path, IsTakenToALoneBodyThatReflectsASingleWayOrLetsLightIn)
+{
+    ConductorMaterial metal; // smooth unless it says otherwise
+    CookTorranceMaterial varnish;
+    varnish.base_color.value = {0.9f, 0.9f, 0.9f};
+    varnish.metallic.value = 1;
+    varnish.roughness.value = 0;
+    GlassMaterial frosted;
+    frosted.roughness.value = 0.3;
+    for (const TransportType transport : {TransportType::automatic, TransportType::direct})
+        for (const Material& material : {Material(metal), Material(varnish), Material(frosted)}) {
+            const bool is_glass = std::holds_alternative<GlassMaterial>(material);
+            if (is_glass && transport == TransportType::direct)
+                continue; // light through it is scattered twice
+            TestScene test;
+            test.description.materials = {{"ball", material}};
+            ObjectDescription& ball = test.description.objects.emplace_back();
+            ball.shape = SphereShape{1};
+            ball.material = 0;
+            test.description.environment = ColorEnvironment{{1, 1, 1}};
+            test.description.transport.type = transport;
+            test.description.camera.emplace();
+            test.description.camera->position = {0, 0, 4};
+            test.description.camera->fov_deg = 10; // the ball fills the picture
+            test.settings.image.width_px = test.settings.image.height_px = 8;
+            test.settings.quality.samples = 64;
+            const float seen = tests::mean_of(render_description(test).film.mean()).g;
+            EXPECT_GT(seen, 0.8f);
+            EXPECT_LT(seen, 1.001f);
+        }
 }
