@@ -6,7 +6,7 @@
 // Defaults are the member initialisers of the structs, nowhere else. `unbuilt` names members that scene.md
 // knows and this build does not.
 //
-// A visitor has: number, integer, boolean, word, only, point, direction, color, textured_number,
+// A visitor has: number, integer, boolean, word, point, direction, color, textured_number,
 // textured_color, extents, object, group, kinds, list, table, unbuilt, needs, exclude, only_when, and the few
 // below that stand for one place alone: aim, sun_angles, geometry, image_of, material_of, metal_of, placement,
 // files, labels, fail_on.

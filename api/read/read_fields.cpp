@@ -66,11 +66,6 @@ void ReadFields::boolean(const char* name, bool& value, const char*)
         wrong_type(at(name), "true or false", *node);
 }
 
-void ReadFields::only(const char* name, WordTable words, const char*)
-{
-    chosen(name, words, nullptr);
-}
-
 void ReadFields::unbuilt(std::initializer_list<const char*> names, const char* remedy)
 {
     for (const char* name : names) {

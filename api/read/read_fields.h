@@ -49,7 +49,6 @@ public:
     bool number(const char* name, double& value, const Range& range, const char* doc);
     bool number(const char* name, std::optional<double>& value, const Range& range, const char* doc);
     void boolean(const char* name, bool& value, const char* doc);
-    void only(const char* name, WordTable words, const char* doc);
     bool point(const char* name, renderer::Vec3d& value, const char* doc);
     bool direction(const char* name, renderer::Vec3d& value, const char* doc);
     void color(const char* name, renderer::Rgb& value, const Range& range, const char* doc);

@@ -40,11 +40,6 @@ void SchemaFields::boolean(const char* name, bool value, const char* doc)
     put(name, told({{"type", "boolean"}, {"default", value}}, doc));
 }
 
-void SchemaFields::only(const char* name, WordTable words, const char* doc)
-{
-    put(name, one_of(words, name_of(words, 0), doc));
-}
-
 void SchemaFields::point(const char* name, const renderer::Vec3d& value, const char* doc)
 {
     put(name, numbers(kCoordinate, 3, Json::array({value.x, value.y, value.z}), doc));

@@ -55,7 +55,6 @@ public:
     {
         put(name, told({{"enum", names_of(words_for<E>())}}, doc));
     }
-    void only(const char* name, WordTable words, const char* doc);
     void point(const char* name, const renderer::Vec3d& value, const char* doc);
     void direction(const char* name, const renderer::Vec3d& value, const char* doc);
     void color(const char* name, const renderer::Rgb& value, const Range& range, const char* doc);

@@ -24,9 +24,8 @@ inline constexpr int kNotBuilt = -1;
 struct Word {
     std::string_view name;
     int value = kNotBuilt; // enumerator, or index of the alternative in its variant
-    bool accepted = true;  // false: described already, and not yet rendered
 
-    [[nodiscard]] constexpr bool built() const { return accepted && value != kNotBuilt; }
+    [[nodiscard]] constexpr bool built() const { return value != kNotBuilt; }
 };
 using WordTable = std::span<const Word>;
 
@@ -45,15 +44,6 @@ constexpr Word alternative(std::string_view name)
 {
     static_assert(kIndexIn<T, V> >= 0);
     return {name, kIndexIn<T, V>};
-}
-
-// The description has it, the renderer not yet.
-template <typename V, typename T>
-constexpr Word described(std::string_view name)
-{
-    Word word = alternative<V, T>(name);
-    word.accepted = false;
-    return word;
 }
 
 template <typename E>

@@ -54,7 +54,6 @@ public:
     {
         if (value) word(name, *value, doc);
     }
-    void only(const char* name, WordTable words, const char*) { out_[name] = name_of(words, 0); }
     void point(const char* name, const renderer::Vec3d& value, const char*);
     void direction(const char* name, const renderer::Vec3d& value, const char* doc)
     {

@@ -1,5 +1,6 @@
 #include "renderer/integrators/path.h"
 
+#include "renderer/color/strongest.h"
 #include "renderer/integrators/direct_lighting.h"
 #include "renderer/integrators/surface_step.h"
 
@@ -14,11 +15,6 @@ namespace {
 constexpr std::uint32_t kSureScatterings = 3;
 // A path that loses nothing still has to end.
 constexpr float kMostSurvival = 0.98f;
-
-float strongest(Rgb c)
-{
-    return std::max({c.r, c.g, c.b});
-}
 
 struct Path {
     Ray ray;

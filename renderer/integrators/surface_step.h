@@ -10,7 +10,7 @@ namespace renderer {
 // this is then one part; 0: all of it.
 Rgb background(const Scene& scene, Vec3d direction, double drawn_pdf);
 
-// What is left of light after `way` metres, or more strictly ray lengths that are metres, of what fills the place.
+// What is left of light after `way` metres of what fills the place.
 Rgb transmittance(const Media& media, double way);
 
 // Unit direction in which a mirror or the smooth boundary of glass sends a ray on; in double, since errors of a

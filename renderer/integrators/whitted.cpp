@@ -1,5 +1,6 @@
 #include "renderer/integrators/whitted.h"
 
+#include "renderer/color/strongest.h"
 #include "renderer/integrators/direct_lighting.h"
 #include "renderer/integrators/surface_step.h"
 
@@ -12,11 +13,6 @@ namespace {
 
 // Branches that are done and not yet forgotten: two mirrors may face each other for a million rays.
 constexpr std::size_t kKept = 1024;
-
-float strongest(Rgb c)
-{
-    return std::max({c.r, c.g, c.b});
-}
 
 struct Branch {
     Ray ray;

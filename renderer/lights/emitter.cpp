@@ -1,5 +1,6 @@
 #include "renderer/lights/emitter.h"
 
+#include "renderer/color/strongest.h"
 #include "renderer/lights/spherical_sampling.h"
 #include "renderer/math/transcendental.h"
 #include "renderer/sampling/warp.h"
@@ -15,11 +16,6 @@ namespace {
 // angles would have few digits. Above the other one the triangle's formulas lose theirs.
 constexpr double kLeastSolidAngle = 1e-3, kMostSolidAngle = 6.2;
 constexpr double kRightAngle = 1e-9; // cosine up to which sides count as at right angles
-
-double strongest(Rgb c)
-{
-    return static_cast<double>(std::max({c.r, c.g, c.b}));
-}
 
 Vec3d column(const Affine3& m, std::size_t i)
 {
@@ -352,7 +348,7 @@ Bounds3d bounds_of(const Emitter& e)
 
 double power_of(const Emitter& e)
 {
-    return strongest(e.radiance) * kPi * shining_area(e);
+    return static_cast<double>(strongest(e.radiance)) * kPi * shining_area(e);
 }
 
 Rgb radiance_of_power(Rgb power, const Emitter& e)

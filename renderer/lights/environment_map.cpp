@@ -1,5 +1,6 @@
 #include "renderer/lights/environment_map.h"
 
+#include "renderer/color/strongest.h"
 #include "renderer/math/transcendental.h"
 
 #include <algorithm>
@@ -10,11 +11,6 @@
 namespace renderer {
 
 namespace {
-
-double strongest(Rgb c)
-{
-    return static_cast<double>(std::max({c.r, c.g, c.b}));
-}
 
 // Interval of a running sum that holds u, and where in it, in [0, 1).
 template <typename T>
@@ -47,11 +43,11 @@ EnvironmentMap::EnvironmentMap(std::uint32_t width,
         float* const sums = &columns_[row * (width_ + 1)];
         double sum = 0;
         for (std::size_t x = 0; x < width; ++x)
-            sum += strongest(texels_[row * width + x]);
+            sum += static_cast<double>(strongest(texels_[row * width + x]));
         double running = 0;
         for (std::size_t x = 0; x < width; ++x) {
             sums[x] = static_cast<float>(sum > 0 ? running / sum : 0);
-            running += strongest(texels_[row * width + x]);
+            running += static_cast<double>(strongest(texels_[row * width + x]));
         }
         sums[width] = sum > 0 ? 1.0f : 0.0f;
         rows_[row + 1] = rows_[row] + sum * solid_angle(row);

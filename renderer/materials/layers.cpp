@@ -1,5 +1,6 @@
 #include "renderer/materials/layers.h"
 
+#include "renderer/color/strongest.h"
 #include "renderer/description/material.h"
 #include "renderer/materials/facet_albedo.h"
 #include "renderer/materials/fresnel.h"
@@ -10,11 +11,6 @@
 namespace renderer {
 
 namespace {
-
-float strongest(Rgb c)
-{
-    return std::max({c.r, c.g, c.b});
-}
 
 // F(c) <= white + slanted (1 - c)^5 for every cosine.
 struct FresnelBound {

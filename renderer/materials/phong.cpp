@@ -1,5 +1,6 @@
 #include "renderer/materials/phong.h"
 
+#include "renderer/color/strongest.h"
 #include "renderer/math/transcendental.h"
 #include "renderer/sampling/warp.h"
 
@@ -10,11 +11,6 @@ namespace renderer {
 namespace {
 
 constexpr float kOneOverPi = static_cast<float>(1 / kPi);
-
-float strongest(Rgb c)
-{
-    return std::max({c.r, c.g, c.b});
-}
 
 Vec3f mirrored(Vec3f w)
 {

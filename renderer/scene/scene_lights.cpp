@@ -1,5 +1,7 @@
 #include "renderer/scene/scene_lights.h"
 
+#include "renderer/color/strongest.h"
+
 #include <algorithm>
 #include <optional>
 #include <variant>
@@ -32,7 +34,7 @@ LightBounds bounds_for_tree(const PreparedLight& light)
     b.box.extend(light.position);
     // Of a point's intensity the power is 4 pi times as much; a spot counts as a point, since it may be aimed anywhere.
     constexpr double kFourPi = 12.566370614359172954;
-    b.power = kFourPi * static_cast<double>(std::max({light.strength.r, light.strength.g, light.strength.b}));
+    b.power = kFourPi * static_cast<double>(strongest(light.strength));
     return b;
 }
 

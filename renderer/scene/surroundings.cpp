@@ -1,0 +1,66 @@
+#include "renderer/scene/surroundings.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace renderer {
+
+std::shared_ptr<const EnvironmentMap> environment_map(const SceneDescription& scene,
+                                                      std::span<const SharedImage> images)
+{
+    const auto* const told = scene.environment ? std::get_if<ImageEnvironment>(&*scene.environment) : nullptr;
+    if (told == nullptr) return nullptr;
+    const SharedImage& image = images[told->image];
+    const Texture texture(image, encoding_of(TextureUse{}, *image, true), false);
+    std::vector<Rgb> texels;
+    texels.reserve(image->pixels());
+    const auto light = [told](float number) {
+        constexpr double kMost = std::numeric_limits<float>::max();
+        return static_cast<float>(std::clamp(static_cast<double>(number) * told->scale, 0.0, kMost));
+    };
+    for (std::uint32_t y = 0; y < image->height; ++y)
+        for (std::uint32_t x = 0; x < image->width; ++x) {
+            const TexturePoint at{(x + 0.5) / image->width, 1 - (y + 0.5) / image->height};
+            const Rgb c = texture.lookup(at, TextureWrap::clamp, TextureFilter::nearest, {}).color;
+            texels.push_back({light(c.r), light(c.g), light(c.b)});
+        }
+    return std::make_shared<const EnvironmentMap>(
+        image->width, image->height, std::move(texels), told->rotation_deg);
+}
+
+Media media_around(Vec3d point,
+                   const InstanceTree& tree,
+                   std::span<const Bsdf> bsdfs,
+                   std::span<const Scene::Parts::Look> looks)
+{
+    Media media;
+    if (std::none_of(bsdfs.begin(), bsdfs.end(), transmits)) return media;
+    constexpr int kMostSurfaces = 4096; // glass that was not closed might never end
+    constexpr Vec3d kAnyWay{0.5376, 0.7312, 0.4201};
+    std::vector<std::pair<std::uint32_t, const GlassMedium*>> left;
+    std::map<std::uint32_t, int> entered;
+    Ray ray{point, kAnyWay};
+    for (int i = 0; i < kMostSurfaces; ++i) {
+        const std::optional<SceneHit> hit = tree.closest_hit(ray);
+        if (!hit) break;
+        ray.origin = offset_origin(hit->point, kAnyWay);
+        const Bsdf& bsdf = bsdfs[looks[hit->instance].first_bsdf]; // of a mesh's own materials the first
+        if (!transmits(bsdf)) continue;
+        if (dot(hit->point.normal, kAnyWay) < 0)
+            ++entered[hit->instance];
+        else if (entered[hit->instance] > 0)
+            --entered[hit->instance];
+        else
+            left.emplace_back(hit->instance, &bsdf.medium);
+    }
+    for (auto body = left.rbegin(); body != left.rend(); ++body)
+        media.cross(body->first, *body->second, true);
+    return media;
+}
+
+} // namespace renderer
