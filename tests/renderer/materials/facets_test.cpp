@@ -251,7 +251,7 @@ TEST(Facets, AreDistributedAsTheirDensitiesSay)
         const Microfacets facets(alpha);
         for (const double mu : {1.0, 0.7, 0.1, 1e-3}) {
             double cosines = 0, seen = 0;
-            constexpr int kRings = 2000, kSectors = 500;
+            constexpr int kRings = 2000;
             const Vec3d o = renderer::unit_double(at_cosine(mu));
             for (int i = 0; i < kRings; ++i) {
                 const double t = (i + 0.5) / kRings * kPi / 2, tangent = alpha * std::tan(t);
@@ -259,15 +259,16 @@ TEST(Facets, AreDistributedAsTheirDensitiesSay)
                 // d omega = sin d theta d phi; d theta = alpha / cos^2(t) c^2 dt
                 const double ring = s * alpha * c * c / (std::cos(t) * std::cos(t)) * (kPi / 2 / kRings);
                 cosines += ring * 2 * kPi * facets.distribution({s, 0, c}) * c;
-                for (int j = 0; j < kSectors; ++j) {
-                    const double phi = (j + 0.5) / kSectors * kPi;
-                    const Vec3d h{s * std::cos(phi), s * std::sin(phi), c};
-                    seen += ring * 2 * kPi / kSectors * facets.masking(o.z) * facets.distribution(h) *
-                            std::max(0.0, dot(o, h));
-                }
+                // D is the same all around, so that max(0, o.h) is integrated around in closed form: its kink
+                // would cost a sum most of its digits where mu is small.
+                const double across = o.x * s, along = o.z * c;
+                const double end = across > along ? std::acos(-along / across) : kPi;
+                const Vec3d h{s * std::cos(i), s * std::sin(i), c};
+                seen += ring * 2 * facets.masking(o.z) * facets.distribution(h) *
+                        (across * std::sin(end) + along * end);
             }
             EXPECT_NEAR(cosines, 1, 1e-4) << alpha;
-            EXPECT_NEAR(seen / o.z, 1, 1e-4 * std::max(1.0, 0.1 / mu)) << alpha << " " << mu;
+            EXPECT_NEAR(seen / o.z, 1, 1e-4) << alpha << " " << mu;
         }
     }
 }
