@@ -94,6 +94,7 @@ std::string write_report(const renderer::RenderReport& report,
           {"instances", geometry.instances},
           {"bvh_bytes", geometry.bvh_bytes}}},
         {"notes", report.notes}};
+    if (report.sky) json["sky"] = {{"table_error", report.sky->table_error}};
     if (report.meter) json["meter"] = meter_json(*report.meter);
     return text_of(json, pretty);
 }

@@ -193,6 +193,7 @@ private:
         if (tally_.camera_rays != 0)
             r.numerics.cut_weight = tally_.cut_weight / static_cast<double>(tally_.camera_rays);
         if (scene_.camera().is_meter()) r.meter = read_meter(film_, scene_.camera().quantity());
+        if (scene_.sky() != nullptr) r.sky = SkyReport{scene_.sky()->table_error()};
         r.geometry = scene_.geometry();
         const unsigned asked = settings_.acceleration.threads;
         r.threads = asked == 0 ? pool_.size() : std::min(asked, pool_.size());

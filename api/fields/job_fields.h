@@ -7,11 +7,12 @@
 // knows and this build does not.
 //
 // A visitor has: number, integer, boolean, word, point, direction, color, textured_number,
-// textured_color, extents, object, group, kinds, list, table, unbuilt, needs, exclude, only_when, and the few
+// textured_color, coefficients, extents, object, group, kinds, list, table, unbuilt, needs, exclude, only_when, and the few
 // below that stand for one place alone: aim, sun_angles, geometry, image_of, material_of, metal_of, placement,
-// files, labels, fail_on.
+// files, labels, fail_on, preset.
 #pragma once
 
+#include "api/fields/atmosphere_fields.h"
 #include "api/fields/camera_fields.h"
 #include "api/fields/light_fields.h"
 #include "api/fields/material_fields.h"
@@ -116,7 +117,10 @@ void fields(V& v, X& image)
     v.integer("width", image.width_px, kSide, "pixels");
     v.integer("height", image.height_px, kSide, "pixels");
     v.object("region", image.region, "crop: the same pixels as the whole picture has there");
-    v.number("exposure_ev", image.exposure_ev, kExposure, "radiance is multiplied by 2^exposure_ev");
+    v.number("exposure_ev",
+             image.exposure_ev,
+             kExposure,
+             "radiance is multiplied by 2^exposure_ev; left out: 0, under an atmosphere by its sun");
     v.word("tone", image.tone, "from radiance to display");
     v.unbuilt({"layers"}, "available: the picture alone");
 }

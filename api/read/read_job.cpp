@@ -6,6 +6,7 @@
 #include "api/read/read_fields.h"
 #include "api/words/limit_words.h"
 #include "api/words/sentences.h"
+#include "renderer/description/check_atmosphere.h"
 
 #include <algorithm>
 #include <utility>
@@ -66,6 +67,16 @@ void check_not_empty(const renderer::SceneDescription& scene, FaultList& faults)
     if (!scene.objects.empty() || !dark || faults.touches("/scene")) return;
     faults.add(
         "/scene", "empty_scene", "there is nothing to see: give at least one object, or an environment");
+}
+
+void check_air(const renderer::SceneDescription& scene, FaultList& faults)
+{
+    const auto* const air =
+        scene.environment ? std::get_if<renderer::AtmosphereDescription>(&*scene.environment) : nullptr;
+    if (air == nullptr) return;
+    for (renderer::Fault& fault : renderer::check_atmosphere(*air, "/scene/environment"))
+        if (!faults.touches(fault.pointer))
+            faults.add(std::move(fault.pointer), std::move(fault.code), std::move(fault.detail));
 }
 
 void check_spot_lights(const renderer::SceneDescription& scene, FaultList& faults)
@@ -147,6 +158,7 @@ std::variant<JobRequest, ProblemDetails> read_job(std::string_view json, const R
     if (std::get<Json>(parsed).is_object()) check_not_empty(job.scene, state.faults);
     check_spot_lights(job.scene, state.faults);
     settle_meter(job);
+    check_air(job.scene, state.faults);
     check_image(job.settings.image, context.limits, state.faults);
     settle_quality(job.settings.quality, context.limits);
     if (!state.faults.empty()) return refusal(state.faults.take());

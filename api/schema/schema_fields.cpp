@@ -203,6 +203,20 @@ Json SchemaFields::schema_of(const renderer::ObjectDescription& object)
     return {{"oneOf", std::move(any)}};
 }
 
+void SchemaFields::coefficients(const char* name,
+                                const std::vector<double>& values,
+                                const Range& range,
+                                const char* doc)
+{
+    Json list{{"type", "array"},
+              {"items", within(range)},
+              {"minItems", 1},
+              {"maxItems", renderer::kMostWavelengths}};
+    Json member{{"oneOf", Json::array({within(range), std::move(list)})}};
+    if (!values.empty()) member["default"] = values;
+    put(name, told(std::move(member), doc));
+}
+
 Json SchemaFields::typed(Json schema, std::string_view type)
 {
     schema["properties"]["type"] = {{"const", type}};

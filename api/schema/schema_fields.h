@@ -113,6 +113,14 @@ public:
     }
     void table(const char* name, const std::vector<renderer::NamedMaterial>&, const char* doc);
 
+    // Nothing by default: the preset's law.
+    void
+    coefficients(const char* name, const std::vector<double>& values, const Range& range, const char* doc);
+    void preset(const char* name, const renderer::AtmosphereDescription& atmosphere, const char* doc)
+    {
+        word(name, atmosphere.preset, doc);
+    }
+
     void unbuilt(std::initializer_list<const char*>, const char*) {}
     void needs(std::initializer_list<const char*> names);
     void exclude(const char* a, const char* b, const char* remedy);

@@ -65,10 +65,11 @@ WordTable words_for<Light>()
 template <>
 WordTable words_for<Environment>()
 {
-    static constexpr std::array words{alternative<Environment, renderer::NoEnvironment>("none"),
-                                      alternative<Environment, renderer::ColorEnvironment>("color"),
-                                      alternative<Environment, renderer::ImageEnvironment>("image"),
-                                      Word{"atmosphere"}};
+    static constexpr std::array words{
+        alternative<Environment, renderer::NoEnvironment>("none"),
+        alternative<Environment, renderer::ColorEnvironment>("color"),
+        alternative<Environment, renderer::ImageEnvironment>("image"),
+        alternative<Environment, renderer::AtmosphereDescription>("atmosphere")};
     return words;
 }
 

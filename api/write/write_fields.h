@@ -124,6 +124,15 @@ public:
     }
     void table(const char* name, const std::vector<renderer::NamedMaterial>& materials, const char*);
 
+    void coefficients(const char* name, const std::vector<double>& values, const Range&, const char*)
+    {
+        if (!values.empty()) out_[name] = values;
+    }
+    void preset(const char* name, const renderer::AtmosphereDescription& atmosphere, const char* doc)
+    {
+        word(name, atmosphere.preset, doc);
+    }
+
     void unbuilt(std::initializer_list<const char*>, const char*) {}
     void needs(std::initializer_list<const char*>) {}
     void exclude(const char*, const char*, const char*) {}

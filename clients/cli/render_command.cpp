@@ -61,10 +61,10 @@ std::shared_ptr<const renderer::Scene> prepare_scene(LocalJob& job,
     return renderer::prepare(job.assumed, plan, prepared, settings, pool, stop, job.images);
 }
 
-renderer::RenderResult render_job(LocalJob& job, bool quiet, const std::stop_token& stop)
+renderer::RenderResult
+render_job(LocalJob& job, const renderer::Plan& plan, bool quiet, const std::stop_token& stop)
 {
     const auto start = std::chrono::steady_clock::now();
-    const renderer::Plan plan = plan_of(job);
     const renderer::RenderSettings& settings = job.request.settings;
     renderer::ThreadPool pool(settings.acceleration.threads);
     const auto scene = prepare_scene(job, plan, pool, stop);
@@ -81,10 +81,11 @@ renderer::RenderResult render_job(LocalJob& job, bool quiet, const std::stop_tok
     return *std::move(result);
 }
 
-renderer::Picture picture_of(const renderer::RenderResult& result, const api::JobRequest& request)
+renderer::Picture
+picture_of(const renderer::RenderResult& result, const api::JobRequest& request, double exposure_ev)
 {
     renderer::Picture picture{.image = result.film.mean(),
-                              .exposure_ev = request.settings.image.exposure_ev,
+                              .exposure_ev = exposure_ev,
                               .tone = request.settings.image.tone,
                               .texts = {}};
     for (auto& [keyword, text] :
@@ -118,9 +119,10 @@ ExitCode render_command(const RenderOptions& options, const std::stop_token& sto
         for (const std::string& note : job.notes)
             std::fprintf(stderr, "note: %s\n", note.c_str());
 
-    renderer::RenderResult result = render_job(job, options.quiet, stop);
+    const renderer::Plan plan = plan_of(job);
+    renderer::RenderResult result = render_job(job, plan, options.quiet, stop);
     result.report.notes = job.notes;
-    const renderer::Picture picture = picture_of(result, job.request);
+    const renderer::Picture picture = picture_of(result, job.request, plan.exposure_ev);
     const std::vector<std::uint8_t> bytes = renderer::encode_picture(picture, encoding);
     write_file(options.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!options.report.empty())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/color/rgb.h"
+#include "renderer/description/atmosphere.h"
 #include "renderer/math/affine.h"
 
 #include <cstdint>
@@ -72,6 +73,6 @@ struct ImageEnvironment {    // equirectangular: its centre column lies along -z
     double scale = 1;        // of its numbers, to W/(m^2 sr)
     friend bool operator==(const ImageEnvironment&, const ImageEnvironment&) = default;
 };
-using Environment = std::variant<NoEnvironment, ColorEnvironment, ImageEnvironment>;
+using Environment = std::variant<NoEnvironment, ColorEnvironment, ImageEnvironment, AtmosphereDescription>;
 
 } // namespace renderer

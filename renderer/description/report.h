@@ -78,6 +78,11 @@ struct MeterReading {
     std::uint32_t replicates = 0;
 };
 
+// How exact the tables of an atmosphere are.
+struct SkyReport {
+    double table_error = 0; // of the sky's radiance, against quadrature: rms over mean
+};
+
 struct RenderReport {
     ModelReport models;
     NumericsReport numerics;
@@ -85,6 +90,7 @@ struct RenderReport {
     TimingReport timing;
     GeometryReport geometry;
     std::optional<MeterReading> meter;
+    std::optional<SkyReport> sky;
     std::uint32_t threads = 0;
     std::vector<std::string> notes; // of the meshes' import, each with its mesh's name; the caller's to fill
 };

@@ -18,7 +18,8 @@ enum class Tone : std::uint8_t { srgb, linear, filmic };
 struct ImageSettings {
     std::uint32_t width_px = 800, height_px = 600;
     std::optional<PixelRect> region; // crop: the same pixels as the full picture has there
-    double exposure_ev = 0;          // radiance is multiplied by 2^exposure_ev before the tone curve
+    // Radiance is multiplied by 2^exposure_ev before the tone curve; nothing: the plan chooses (0 without an atmosphere).
+    std::optional<double> exposure_ev;
     Tone tone = Tone::srgb;
     friend bool operator==(const ImageSettings&, const ImageSettings&) = default;
 };

@@ -39,7 +39,7 @@ Image16 develop_16(const LinearImage& image, double exposure_ev, Tone tone)
 
 Image8 develop(const LinearImage& image, const ImageSettings& settings)
 {
-    return develop_8(image, settings.exposure_ev, settings.tone);
+    return develop_8(image, settings.exposure_ev.value_or(0), settings.tone);
 }
 
 } // namespace renderer

@@ -11,14 +11,19 @@ namespace renderer {
 Rgb background(const Scene& scene, Vec3d direction, double drawn_pdf)
 {
     Rgb seen = scene.environment();
-    if (const EnvironmentMap* const map = scene.environment_map()) {
+    const SkyLight* const sky = drawn_pdf > 0 ? nullptr : scene.sky();
+    if (sky != nullptr) {
+        seen = sky->radiance(direction) + sky->sun_radiance(direction);
+    } else if (const EnvironmentMap* const map = scene.environment_map()) {
         if (drawn_pdf > 0)
             seen += map->radiance(direction) *
                     static_cast<float>(power_heuristic(drawn_pdf, map->pdf(direction)));
         else
             seen += map->interpolated(direction);
     }
-    for (const Sun& sun : scene.suns()) {
+    for (std::size_t i = 0; i < scene.suns().size(); ++i) {
+        if (sky != nullptr && scene.sun_is_of_sky(i)) continue; // seen through the air
+        const Sun& sun = scene.suns()[i];
         const Rgb disk = radiance_towards(sun, direction);
         if (!is_black(disk))
             seen += disk * static_cast<float>(drawn_pdf > 0 ? power_heuristic(drawn_pdf, sun.pdf) : 1);
@@ -34,6 +39,16 @@ Rgb transmittance(const Media& media, double way)
         return absorption > 0 ? static_cast<float>(exp(-static_cast<double>(absorption) * way)) : 1.0f;
     };
     return {left(here->absorption.r), left(here->absorption.g), left(here->absorption.b)};
+}
+
+Rgb behind_air(const Scene& scene, const Ray& ray, double distance, Rgb& added)
+{
+    added = {};
+    const SkyLight* const sky = scene.sky();
+    if (sky == nullptr || !sky->has_air_before()) return {1, 1, 1};
+    const SkyLight::Between air = sky->air_before(ray.direction, distance);
+    added = air.added;
+    return air.transmittance;
 }
 
 Vec3d reflected(const Surface& surface, Vec3d direction)

@@ -13,6 +13,9 @@ Rgb background(const Scene& scene, Vec3d direction, double drawn_pdf);
 // What is left of light after `way` metres of what fills the place.
 Rgb transmittance(const Media& media, double way);
 
+// What a camera ray's air leaves of what it sees at `distance`, and adds to it; nothing where air does not count.
+Rgb behind_air(const Scene& scene, const Ray& ray, double distance, Rgb& added);
+
 // Unit direction in which a mirror or the smooth boundary of glass sends a ray on; in double, since errors of a
 // direction grow over a path. `eta` as in Bsdf; nothing sensible where all light is reflected.
 Vec3d reflected(const Surface& surface, Vec3d direction);

@@ -65,6 +65,17 @@ std::string refused(std::uint64_t value, const std::string& what, const char* li
 // Radiance and running sums: see lights/environment_map.h.
 constexpr std::uint64_t kEnvironmentBytesPerPixel = 24;
 
+// Tables of an air, a group of four wavelengths, and of the views from the eye.
+std::uint64_t sky_bytes(const AtmosphereDescription& a)
+{
+    const std::uint64_t groups = (a.wavelengths_nm.size() + 3) / 4;
+    const std::uint64_t scattered = a.scattering == SkyScattering::single ? 0
+                                    : a.mode == SkyMode::exact            ? 81'000'000
+                                                                          : 16'000'000;
+    constexpr std::uint64_t kViews = 6'000'000, kPictureBytes = 512 * 256 * kEnvironmentBytesPerPixel;
+    return groups * (scattered + kViews) + kPictureBytes;
+}
+
 } // namespace
 
 std::uint64_t tree_bytes(std::uint64_t triangles)
@@ -116,6 +127,9 @@ Budget predict(const SceneDescription& scene,
         sky != nullptr && sky->image < images.size())
         b.texture_bytes +=
             std::uint64_t{images[sky->image].width} * images[sky->image].height * kEnvironmentBytesPerPixel;
+    if (const auto* const air =
+            scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr)
+        b.texture_bytes += sky_bytes(*air);
     for (const ImageFacts& facts : images)
         add_image(b, facts);
     if (settings.acceleration.levels == BvhLevels::none)

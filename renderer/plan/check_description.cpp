@@ -1,5 +1,6 @@
 #include "renderer/plan/check_description.h"
 
+#include "renderer/description/check_atmosphere.h"
 #include "renderer/description/textured_values.h"
 #include "renderer/plan/light_shapes.h"
 #include "renderer/plan/placement.h"
@@ -66,6 +67,10 @@ public:
     void run()
     {
         if (scene_.camera) check(*scene_.camera);
+        if (const auto* const atmosphere =
+                scene_.environment ? std::get_if<AtmosphereDescription>(&*scene_.environment) : nullptr)
+            for (Fault& found : check_atmosphere(*atmosphere, "/scene/environment"))
+                faults_.add(std::move(found));
         for (std::size_t i = 0; i < scene_.objects.size(); ++i)
             check(scene_.objects[i], "/scene/objects/" + std::to_string(i));
         for (std::size_t i = 0; i < scene_.lights.size(); ++i)

@@ -24,7 +24,7 @@ struct Census {
     std::set<std::uint32_t> shown_meshes;                            // with materials of their own
     std::size_t emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
     std::size_t point = 0, spot = 0, directional = 0, sun = 0, area = 0;
-    bool sky = false, sky_picture = false;
+    bool sky = false, sky_picture = false, sky_air = false;
 };
 
 template <typename T, typename Variant>
@@ -89,6 +89,7 @@ Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshe
         c.area += shape_of(light) ? 1u : 0u;
     }
     c.sky_picture = scene.environment && std::holds_alternative<ImageEnvironment>(*scene.environment);
+    c.sky_air = scene.environment && std::holds_alternative<AtmosphereDescription>(*scene.environment);
     c.sky = scene.environment && std::holds_alternative<ColorEnvironment>(*scene.environment);
     return c;
 }
@@ -281,9 +282,9 @@ private:
         else if (c_.sky)
             use("environment_light",
                 "the environment's colour is background and light: one ray a sample, drawn by the material");
-        else
+        else if (!c_.sky_air)
             skip("environment_light", "the environment is none");
-        if (all == 0 && !c_.sky && !c_.sky_picture)
+        if (all == 0 && !c_.sky && !c_.sky_picture && !c_.sky_air)
             skip("lights",
                  "the scene has no light and says that its environment is none: nothing but what surfaces "
                  "give "

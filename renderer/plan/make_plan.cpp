@@ -2,6 +2,7 @@
 #include "renderer/plan/budget.h"
 #include "renderer/plan/check_description.h"
 #include "renderer/plan/choices.h"
+#include "renderer/plan/choose_sky.h"
 #include "renderer/plan/choose_transport.h"
 #include "renderer/plan/explain_numerics.h"
 #include "renderer/plan/plan.h"
@@ -37,6 +38,8 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     plan.precision = corner_precision(description, meshes);
     plan.prediction = predict_cost(description, settings, budget, transport);
     plan.models = explain(scene, meshes, settings, budget, std::move(transport));
+    plan.sky = choose_sky(description, meshes, plan.models);
+    plan.exposure_ev = choose_exposure(settings.image, description, plan.models);
     explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);
     return plan;
 }

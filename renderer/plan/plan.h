@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -72,13 +73,21 @@ AssumedScene assume_defaults(SceneDescription description, std::span<const MeshF
 // path of one scattering.
 enum class Integrator : std::uint8_t { direct, whitted, path, ambient_occlusion, normals };
 
+// Of an atmosphere: which tables, and how far things are seen through air that counts (0: it does not).
+struct SkyPlan {
+    SkyMode mode = SkyMode::fast; // never automatic
+    double far_m = 0;
+};
+
 struct Plan {
     Integrator integrator = Integrator::direct;
     std::uint32_t max_depth = 1; // scatterings, see description/transport.h
     float clamp = std::numeric_limits<float>::infinity();
-    bool picks_lights = false; // by a tree, one a point; else each is asked
-    Vec3d world_origin{};      // of the frame that is traced in, in the world: see world_frame.h
-    std::string precision;     // of the meshes' corners: "float", "double" or "mixed"
+    bool picks_lights = false;  // by a tree, one a point; else each is asked
+    Vec3d world_origin{};       // of the frame that is traced in, in the world: see world_frame.h
+    std::optional<SkyPlan> sky; // where the environment is an atmosphere
+    double exposure_ev = 0;     // of a picture
+    std::string precision;      // of the meshes' corners: "float", "double" or "mixed"
     ModelReport models;
     Prediction prediction;
 };

@@ -314,13 +314,18 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      const RenderSettings& settings,
                                      ThreadPool& pool,
                                      const std::stop_token& stop,
-                                     std::span<const SharedImage> images)
+                                     std::span<const SharedImage> images,
+                                     SkyCache* skies)
 {
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     const AccelerationSettings& acceleration = settings.acceleration;
     Preparation made(description, plan.world_origin, meshes, images, mesh_tree(acceleration), pool, stop);
     if (!made.run()) return nullptr;
+    const auto sky = sky_light(description, plan, pool, stop, skies);
+    if (plan.sky && !sky) return nullptr;
+    const auto surroundings =
+        sky ? light_from(*sky, pool, made.lights) : environment_map(description, images);
     if (plan.picks_lights) made.lights.pick_by_tree();
 
     InstanceTree tree = acceleration.levels == BvhLevels::two
@@ -337,7 +342,8 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                                       std::move(tree),
                                                       std::move(made.lights),
                                                       environment_of(description),
-                                                      environment_map(description, images),
+                                                      surroundings,
+                                                      sky,
                                                       std::move(made.bsdfs),
                                                       std::move(made.held),
                                                       made.geometry,

@@ -20,6 +20,8 @@
 #include "renderer/sampling/warp.h"
 #include "renderer/scene/scene_lights.h"
 #include "renderer/scene/surface_textures.h"
+#include "renderer/sky/sky_cache.h"
+#include "renderer/sky/sky_light.h"
 
 #include <cstdint>
 #include <memory>
@@ -52,7 +54,8 @@ public:
         InstanceTree tree;
         SceneLights lights;
         Rgb environment;                                       // of one colour; black: none
-        std::shared_ptr<const EnvironmentMap> environment_map; // or a picture
+        std::shared_ptr<const EnvironmentMap> environment_map; // or a picture, of a sky too
+        std::shared_ptr<const SkyLight> sky;                   // what a camera sees of it
         std::vector<Bsdf> bsdfs;
         std::vector<std::shared_ptr<const PreparedMesh>> meshes; // kept alive
         GeometryReport geometry;
@@ -93,7 +96,10 @@ public:
     const EnvironmentMap* environment_map() const
     {
         return parts_.environment_map.get();
-    } // instead; or nullptr
+    }                                                        // instead; or nullptr
+    const SkyLight* sky() const { return parts_.sky.get(); } // of an atmosphere; or nullptr
+    // The sky's own sun is the first of suns(), unless it has set or is a point.
+    bool sun_is_of_sky(std::size_t number) const { return number == 0 && parts_.lights.first_sun_is_of_sky; }
     const GeometryReport& geometry() const { return parts_.geometry; }
     const NumericsReport& numerics() const { return parts_.numerics; }
 
@@ -134,7 +140,7 @@ private:
 };
 
 // meshes[i] is the prepared form of description.meshes[i], images[i] the decoded one of description.images[i]; `plan` is make_plan's for this very scene, so that
-// nothing is checked again. Builds the trees of the parts that objects name: nullptr only if `stop` was
+// nothing is checked again. An atmosphere's tables come from `skies`, if there is such a cache. Builds the trees of the parts that objects name: nullptr only if `stop` was
 // requested meanwhile.
 std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      const Plan& plan,
@@ -142,6 +148,7 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      const RenderSettings& settings,
                                      ThreadPool& pool,
                                      const std::stop_token& stop = {},
-                                     std::span<const SharedImage> images = {});
+                                     std::span<const SharedImage> images = {},
+                                     SkyCache* skies = nullptr);
 
 } // namespace renderer

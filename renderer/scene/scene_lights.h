@@ -17,6 +17,7 @@ namespace renderer {
 struct SceneLights {
     std::vector<PreparedLight> listed; // without extent, to be asked each
     std::vector<Sun> suns;             // likewise
+    bool first_sun_is_of_sky = false;  // of suns: a camera sees it through the air
     std::vector<Emitter> emitters;     // surfaces that shine: asked each, or picked from by the tree
     std::vector<PreparedLight> picked; // without extent, numbered in the tree after the emitters
     LightTree tree;                    // empty: nothing is picked

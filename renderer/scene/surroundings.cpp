@@ -1,5 +1,7 @@
 #include "renderer/scene/surroundings.h"
 
+#include "renderer/math/transcendental.h"
+
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -31,6 +33,42 @@ std::shared_ptr<const EnvironmentMap> environment_map(const SceneDescription& sc
         }
     return std::make_shared<const EnvironmentMap>(
         image->width, image->height, std::move(texels), told->rotation_deg);
+}
+
+std::shared_ptr<const SkyLight> sky_light(const SceneDescription& scene,
+                                          const Plan& plan,
+                                          ThreadPool& pool,
+                                          const std::stop_token& stop,
+                                          SkyCache* skies)
+{
+    const auto* const told =
+        scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr;
+    if (told == nullptr || !plan.sky) return nullptr;
+    AtmosphereDescription air = *told;
+    air.mode = plan.sky->mode;
+    SkyCache alone;
+    std::shared_ptr<const Sky> sky = (skies != nullptr ? *skies : alone).get(air, pool, stop);
+    if (!sky) return nullptr;
+    return std::make_shared<const SkyLight>(
+        air, std::move(sky), scene.camera->position, plan.sky->far_m, pool);
+}
+
+std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool& pool, SceneLights& lights)
+{
+    const Vec3d travels = -sky.sun_direction();
+    if (!(sky.sun_radius_rad() > 0)) {
+        const Rgb irradiance = sky.sun_irradiance();
+        if (!is_black(irradiance))
+            lights.listed.push_back(prepare_light(DirectionalLight{travels, irradiance}));
+    } else if (const Rgb mean = sky.mean_sun_radiance(); !is_black(mean)) {
+        Sun sun = prepare_sun(SunLight{travels, {1, 1, 1}, sky.sun_radius_rad() * (180 / kPi)});
+        sun.radiance = mean;
+        lights.suns.insert(lights.suns.begin(), sun);
+        lights.first_sun_is_of_sky = true;
+    }
+    constexpr std::uint32_t kWidth = 512, kHeight = 256;
+    SkyPanorama picture = sky.panorama(kWidth, kHeight, pool);
+    return std::make_shared<const EnvironmentMap>(kWidth, kHeight, std::move(picture.pixels), 0);
 }
 
 Media media_around(Vec3d point,

@@ -16,10 +16,11 @@ struct Sample {
 };
 
 // Points crowd at the low end of each part, where the air is.
-std::vector<Sample>
-samples_along(const PlanetRay& ray, double top, std::size_t points, const std::vector<double>& edges)
+std::vector<Sample> samples_along(const PlanetRay& ray,
+                                  PlanetRay::Reach reach,
+                                  std::size_t points,
+                                  const std::vector<double>& edges)
 {
-    const PlanetRay::Reach reach = ray.reach(top);
     if (!(reach.end > reach.begin)) return {};
     std::vector<double> stops{reach.begin, reach.end, 0};
     for (const double s : edges)
@@ -46,17 +47,21 @@ LightPath light_path(const Air& air,
                      const LightGrid* grid,
                      const PlanetRay& ray,
                      std::size_t points,
-                     const std::vector<double>& edges)
+                     const std::vector<double>& edges,
+                     double far_m)
 {
     const std::size_t groups = lane_groups(air.wavelengths);
-    const std::vector<Sample> samples = samples_along(ray, air.height_m, points, edges);
+    PlanetRay::Reach reach = ray.reach(air.height_m);
+    const bool ends_in_air = ray.start() + far_m < reach.end;
+    if (ends_in_air) reach.end = ray.start() + far_m;
+    const std::vector<Sample> samples = samples_along(ray, reach, points, edges);
     LightPath path;
     path.start_radius = ray.radius_at(ray.start());
     path.rayleigh.assign(groups * samples.size(), Lanes{});
     path.mie = path.rayleigh;
     path.ground.assign(groups, Lanes{});
     Columns way;
-    double at = samples.empty() ? ray.start() : ray.reach(air.height_m).begin;
+    double at = samples.empty() ? ray.start() : reach.begin;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double u = samples[i].u, altitude = std::max(0.0, ray.altitude(u)), mu = ray.mu(u);
         way = way + columns_along(air, ray, at, u);
@@ -77,7 +82,7 @@ LightPath light_path(const Air& air,
             path.mie[entry][w % kLanes] = static_cast<float>(reaching * air.mie_scattering[w] * density.mie);
         }
     }
-    path.hits_ground = ray.hits_ground();
+    path.hits_ground = !ends_in_air && ray.hits_ground();
     if (!path.hits_ground) return path;
     way = way + columns_along(air, ray, at, ray.ground());
     path.ground_along = ray.ground() - ray.start();

@@ -11,6 +11,7 @@
 #include "renderer/sky/planet_ray.h"
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace renderer {
@@ -31,11 +32,12 @@ struct LightPath {
 };
 
 // `points` a side of the closest approach, and of each of `edges`: distances from the eye at which light steps. `grid`:
-// null where the places are not looked up in one.
+// null where the places are not looked up in one. The way ends at `far_m` from the eye, or where the ground is sooner.
 LightPath light_path(const Air& air,
                      const LightGrid* grid,
                      const PlanetRay& ray,
                      std::size_t points,
-                     const std::vector<double>& edges = {});
+                     const std::vector<double>& edges = {},
+                     double far_m = std::numeric_limits<double>::infinity());
 
 } // namespace renderer

@@ -13,8 +13,8 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kMostOrders = 100;
-constexpr double kSettled = 1e-4; // an order's share of all
-constexpr std::size_t kPointsFromEye = 48;
+constexpr double kSettled = 1e-4;                              // an order's share of all
+constexpr std::size_t kPointsFromEye = 48, kPointsOfPart = 20; // of a whole line of sight, and of a part
 
 Lanes mix(Lanes a, Lanes b, float share)
 {
@@ -263,9 +263,9 @@ Lanes ScatteredLight::gather(
                      mix(source.ground[at_sun.below], source.ground[at_sun.below + 1], at_sun.share);
 }
 
-LightPath ScatteredLight::path(const PlanetRay& ray) const
+LightPath ScatteredLight::path(const PlanetRay& ray, double far_m) const
 {
-    return light_path(air_, &grid_, ray, kPointsFromEye);
+    return light_path(air_, &grid_, ray, std::isfinite(far_m) ? kPointsOfPart : kPointsFromEye, {}, far_m);
 }
 
 Spectrum ScatteredLight::radiance(const LightPath& path, double mu_sun, double nu) const

@@ -22,6 +22,7 @@
 #include "renderer/sky/single_scattering.h"
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <stop_token>
 #include <vector>
@@ -37,8 +38,9 @@ public:
                    ThreadPool& pool,
                    std::stop_token stop = {});
 
-    // A line of sight, for radiance(): of use for every sun and azimuth.
-    [[nodiscard]] LightPath path(const PlanetRay& ray) const;
+    // A line of sight, for radiance(): of use for every sun and azimuth. It ends `far_m` from the eye, if not sooner.
+    [[nodiscard]] LightPath path(const PlanetRay& ray,
+                                 double far_m = std::numeric_limits<double>::infinity()) const;
     // Of orders two and more, those of the ground included; mu_sun, nu at the path's start.
     [[nodiscard]] Spectrum radiance(const LightPath& path, double mu_sun, double nu) const;
 

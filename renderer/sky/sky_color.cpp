@@ -99,6 +99,19 @@ Rgb SkyColor::share(const Spectrum& spectrum) const
             static_cast<float>(std::max(0.0, sum[2]))};
 }
 
+Rgb SkyColor::share_of_lanes(const Lanes* groups) const
+{
+    Rgb sum{};
+    for (std::size_t w = 0; w < weight_.size(); ++w) {
+        const float left = groups[w / kLanes][w % kLanes];
+        sum += Rgb{static_cast<float>(weight_[w][0]),
+                   static_cast<float>(weight_[w][1]),
+                   static_cast<float>(weight_[w][2])} *
+               left;
+    }
+    return {std::max(0.0f, sum.r), std::max(0.0f, sum.g), std::max(0.0f, sum.b)};
+}
+
 Rgb SkyColor::operator()(const Spectrum& spectrum) const
 {
     return share(spectrum) * irradiance_;

@@ -28,6 +28,7 @@ public:
     [[nodiscard]] Rgb of_lanes(const Lanes* groups) const;
     // A share that is taken or left, without the irradiance: of white, white is left.
     [[nodiscard]] Rgb share(const Spectrum& spectrum) const;
+    [[nodiscard]] Rgb share_of_lanes(const Lanes* groups) const;
 
 private:
     std::vector<std::array<double, 3>> weight_; // one a wavelength; each channel sums to 1

@@ -1,14 +1,18 @@
 #include "renderer/sky/sky_light.h"
 
 #include "renderer/math/transcendental.h"
+#include "renderer/sampling/warp.h"
 #include "renderer/sky/gauss_legendre.h"
 #include "renderer/sky/optical_depth.h"
 #include "renderer/sky/phase.h"
+#include "renderer/sky/single_scattering.h"
 #include "renderer/sky/sky_sun.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace renderer {
 
@@ -40,21 +44,109 @@ Vec3d direction_of_sun(const SkySunDescription& sun)
 } // namespace
 
 SkyLight::SkyLight(const AtmosphereDescription& description, ThreadPool& pool, std::stop_token stop)
-    : sky_(description, pool, std::move(stop)), color_(sky_.air().wavelength_nm, description.sun.irradiance),
-      altitude_(description.altitude_m), sun_radius_(description.sun.angular_radius_deg * (kPi / 180)),
-      limb_darkening_(description.sun.limb_darkening), to_sun_(direction_of_sun(description.sun)),
-      view_(sky_.air(), sky_.columns(), sky_.scattered(), altitude_, to_sun_.y, pool)
+    : SkyLight(description, std::make_shared<const Sky>(description, pool, std::move(stop)), {}, 0, pool)
 {
+}
+
+SkyLight::SkyLight(const AtmosphereDescription& description,
+                   std::shared_ptr<const Sky> sky,
+                   Vec3d eye,
+                   double far_m,
+                   ThreadPool& pool)
+    : sky_(std::move(sky)), color_(sky_->air().wavelength_nm, description.sun.irradiance),
+      origin_altitude_(description.altitude_m), sun_radius_(description.sun.angular_radius_deg * (kPi / 180)),
+      limb_darkening_(description.sun.limb_darkening), to_sun_(direction_of_sun(description.sun))
+{
+    const Air& air = sky_->air();
+    const Standing standing(air.radius_m, origin_altitude_, eye);
+    up_ = standing.up;
+    altitude_ = standing.altitude;
+    mu_sun_ = std::clamp(dot(up_, to_sun_), -1.0, 1.0);
+    // Its azimuth, also where it is in the zenith.
     const auto [east, north] = sin_cos_deg(description.sun.azimuth_deg);
-    sun_x_ = east;
-    sun_z_ = -north;
+    const Vec3d along{east, 0, -north}, across = to_sun_ - up_ * mu_sun_;
+    sunwards_ = up_.y == 1                                  ? along
+                : length(across) > 1e-9                     ? normalize(across)
+                : length(along - up_ * dot(up_, along)) > 0 ? normalize(along - up_ * dot(up_, along))
+                                                            : basis_around(up_).first;
+    make_view(pool);
+    if (far_m > 0) aerial_.emplace(air, sky_->columns(), sky_->scattered(), altitude_, mu_sun_, far_m, pool);
+}
+
+void SkyLight::make_view(ThreadPool& pool)
+{
+    SkyViewSize size;
+    constexpr int kMostTimes = 3;
+    for (int times = 0; times < kMostTimes; ++times) {
+        view_.emplace(sky_->air(), sky_->columns(), sky_->scattered(), altitude_, mu_sun_, pool, size);
+        table_error_ = error_of(*view_, pool);
+        if (table_error_ <= kTableError) return;
+        size.rows *= 2;
+        size.azimuths = 2 * size.azimuths - 1;
+    }
+}
+
+double SkyLight::error_of(const SkyView& view, ThreadPool& pool) const
+{
+    // A spiral: directions as far apart as so many can be, over all that has air before it.
+    constexpr std::size_t kDirections = 64;
+    constexpr double kGoldenTurn = 0.6180339887498949;
+    struct Pair {
+        Spectrum exact{}, found{};
+    };
+    const Air& air = sky_->air();
+    std::vector<Pair> pairs(kDirections);
+    pool.run(kDirections, [&](std::size_t i, unsigned) {
+        const double share = (static_cast<double>(i) + 0.5) / kDirections;
+        const double mu = -1 + (view.rows().upper() + 1) * share;
+        const double turn = static_cast<double>(i) * kGoldenTurn;
+        const double cosine = sin_cos_deg(360 * (turn - std::floor(turn))).second;
+        const double sines = std::sqrt(std::max(0.0, (1 - mu * mu) * (1 - mu_sun_ * mu_sun_)));
+        const SkyGeometry geometry{
+            altitude_, mu, mu_sun_, std::clamp(mu * mu_sun_ + sines * cosine, -1.0, 1.0)};
+        const PlanetRay ray(air.radius_m, altitude_, mu);
+        const SingleScattering once = single_scattering(air, ray, geometry, SkyPrecision::exact);
+        if (const ScatteredLight* scattered = sky_->scattered())
+            pairs[i].exact = scattered->radiance(scattered->path(ray), geometry.mu_sun, geometry.nu);
+        for (std::size_t w = 0; w < air.wavelengths; ++w)
+            pairs[i].exact[w] += once.air[w] + once.ground[w];
+        pairs[i].found = view.radiance(mu, cosine);
+    });
+    double worst = 0;
+    for (std::size_t w = 0; w < air.wavelengths; ++w) {
+        double sum = 0, sum2 = 0;
+        for (const Pair& pair : pairs) {
+            const double off = pair.found[w] - pair.exact[w];
+            sum += pair.exact[w];
+            sum2 += off * off;
+        }
+        if (sum > 0) worst = std::max(worst, std::sqrt(sum2 * kDirections) / sum);
+    }
+    return worst;
+}
+
+double SkyLight::azimuth_cosine(Vec3d direction, double mu) const
+{
+    const Vec3d across = direction - up_ * mu;
+    const double size = length(across);
+    return size > 0 ? std::clamp(dot(across, sunwards_) / size, -1.0, 1.0) : 1;
 }
 
 Rgb SkyLight::radiance(Vec3d direction) const
 {
-    const double across = std::sqrt(direction.x * direction.x + direction.z * direction.z);
-    const double azimuth = across > 0 ? (direction.x * sun_x_ + direction.z * sun_z_) / across : 1;
-    return color_(view_.radiance(direction.y, azimuth));
+    const double mu = std::clamp(dot(direction, up_), -1.0, 1.0);
+    std::array<Lanes, lane_groups(kMostWavelengths)> light;
+    view_->radiance(mu, static_cast<float>(azimuth_cosine(direction, mu)), light.data());
+    return color_.of_lanes(light.data());
+}
+
+SkyLight::Between SkyLight::air_before(Vec3d direction, double distance) const
+{
+    const double mu = std::clamp(dot(direction, up_), -1.0, 1.0);
+    std::array<Lanes, lane_groups(kMostWavelengths)> through, added;
+    aerial_->look(
+        mu, static_cast<float>(azimuth_cosine(direction, mu)), distance, through.data(), added.data());
+    return {color_.share_of_lanes(through.data()), color_.of_lanes(added.data())};
 }
 
 // 1 - u (1 - mu), over its mean, with u = 0.6 for visible light.  Source: Cox, "Allen's Astrophysical Quantities", 2000.
@@ -72,19 +164,36 @@ Rgb SkyLight::sun_radiance(Vec3d direction) const
     const double sine2 = dot(apart, apart) * (1 - dot(apart, apart) / 4), edge = sin_cos(sun_radius_).first;
     if (!(sun_radius_ > 0) || sine2 >= edge * edge || dot(direction, to_sun_) <= 0) return {};
     const double disk = kPi * edge * edge;
-    return color_(sky_.transmittance(altitude_, std::clamp(direction.y, -1.0, 1.0))) *
+    return color_(sky_->transmittance(altitude_, std::clamp(dot(direction, up_), -1.0, 1.0))) *
            static_cast<float>(limb(sine2 / (edge * edge)) / disk);
 }
 
 Rgb SkyLight::sun_irradiance() const
 {
-    return color_(sky_.transmittance(altitude_, to_sun_.y));
+    return color_(sky_->transmittance(altitude_, mu_sun_));
+}
+
+Rgb SkyLight::mean_sun_radiance() const
+{
+    // Rings of equal solid angle.
+    constexpr std::size_t kRings = 8, kSpokes = 16;
+    const auto [x, y] = basis_around(to_sun_);
+    const double edge = sin_cos(sun_radius_).first;
+    Rgb sum{};
+    for (std::size_t i = 0; i < kRings; ++i)
+        for (std::size_t k = 0; k < kSpokes; ++k) {
+            const double off2 = edge * edge * (static_cast<double>(i) + 0.5) / kRings, off = std::sqrt(off2);
+            const auto [s, c] = sin_cos_deg(360 * (static_cast<double>(k) + 0.5) / kSpokes);
+            sum +=
+                sun_radiance(normalize(to_sun_ * std::sqrt(std::max(0.0, 1 - off2)) + (x * c + y * s) * off));
+        }
+    return sum * (1.0f / (kRings * kSpokes));
 }
 
 SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
 {
-    const Air& air = sky_.air();
-    const Standing eye(air.radius_m, altitude_, from), end(air.radius_m, altitude_, to);
+    const Air& air = sky_->air();
+    const Standing eye(air.radius_m, origin_altitude_, from), end(air.radius_m, origin_altitude_, to);
     const double distance = length(to - from);
     if (!(distance > 0)) return {};
     const Vec3d view = (to - from) / distance;
@@ -104,7 +213,7 @@ SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
         const double u = begin + (stop - begin) * rule.x[i], weight = (stop - begin) * rule.weight[i];
         const double altitude = std::max(0.0, ray.altitude(u));
         const double sun = (eye.radius * mu_sun + (u - ray.start()) * nu) / ray.radius_at(u);
-        const SunThroughAir light(air, sky_.columns(), altitude, std::clamp(sun, -1.0, 1.0));
+        const SunThroughAir light(air, sky_->columns(), altitude, std::clamp(sun, -1.0, 1.0));
         if (light.hidden()) continue;
         const Columns density = air.density(altitude), here = columns_along(air, ray, begin, u);
         for (std::size_t w = 0; w < air.wavelengths; ++w)
@@ -113,7 +222,7 @@ SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
                 static_cast<double>(light.transmittance(air, w / kLanes)[w % kLanes]) *
                 (air.rayleigh[w] * density.rayleigh * rayleigh + air.mie_scattering[w] * density.mie * mie);
     }
-    if (const ScatteredLight* scattered = sky_.scattered()) {
+    if (const ScatteredLight* scattered = sky_->scattered()) {
         // What all of the line of sight gathers, without what lies beyond.
         const double end_mu = std::clamp(dot(end.up, view), -1.0, 1.0);
         const Spectrum all = scattered->radiance(scattered->path(ray), mu_sun, nu);
@@ -130,22 +239,32 @@ SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
 SkyPanorama SkyLight::panorama(std::size_t width, std::size_t height, ThreadPool& pool) const
 {
     SkyPanorama picture{width, height, std::vector<Rgb>(width * height)};
-    std::vector<float> azimuth(width);
+    std::vector<double> easts(width), norths(width);
+    std::vector<float> azimuths(width);
     for (std::size_t x = 0; x < width; ++x) {
-        const auto [east, north] =
+        std::tie(easts[x], norths[x]) =
             sin_cos_deg(360 * ((static_cast<double>(x) + 0.5) / static_cast<double>(width) - 0.5));
-        azimuth[x] = static_cast<float>(std::clamp(east * sun_x_ - north * sun_z_, -1.0, 1.0));
+        azimuths[x] =
+            static_cast<float>(std::clamp(easts[x] * sunwards_.x - norths[x] * sunwards_.z, -1.0, 1.0));
     }
-    const std::size_t groups = lane_groups(sky_.air().wavelengths);
+    const bool is_upright = up_.y == 1; // then a row has one angle to the vertical
+    const std::size_t groups = lane_groups(sky_->air().wavelengths);
     pool.run(height, [&](std::size_t y, unsigned) {
+        const auto [sine, cosine] =
+            sin_cos_deg(90 - 180 * (static_cast<double>(y) + 0.5) / static_cast<double>(height));
+        Rgb* const pixels = &picture.pixels[y * width];
+        if (!is_upright) {
+            for (std::size_t x = 0; x < width; ++x)
+                pixels[x] = radiance({cosine * easts[x], sine, -cosine * norths[x]});
+            return;
+        }
         SkyView::Row row;
-        view_.row(sin_cos_deg(90 - 180 * (static_cast<double>(y) + 0.5) / static_cast<double>(height)).first,
-                  row);
+        view_->row(sine, row);
         std::array<Lanes, lane_groups(kMostWavelengths)> light{};
         for (std::size_t x = 0; x < width; ++x) {
             for (std::size_t g = 0; g < groups; ++g)
-                light[g] = row.radiance(g, azimuth[x]);
-            picture.pixels[y * width + x] = color_.of_lanes(light.data());
+                light[g] = row.radiance(g, azimuths[x]);
+            pixels[x] = color_.of_lanes(light.data());
         }
     });
     return picture;

@@ -8,6 +8,7 @@
 #include "renderer/sky/sky_sun.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace renderer {
@@ -23,27 +24,16 @@ SkyView::SkyView(const Air& air,
                  double mu_sun,
                  ThreadPool& pool,
                  const SkyViewSize& size)
-    : air_(air), columns_(columns), size_(size), altitude_(altitude), mu_sun_(mu_sun),
-      sun_sine_(std::sqrt(std::max(0.0, (1 - mu_sun) * (1 + mu_sun)))),
-      horizon_(-std::sqrt(altitude * (2 * air.radius_m + altitude)) / (air.radius_m + altitude)),
+    : air_(air), columns_(columns), size_(size), rows_(air, altitude, size.rows), altitude_(altitude),
+      mu_sun_(mu_sun), sun_sine_(std::sqrt(std::max(0.0, (1 - mu_sun) * (1 + mu_sun)))),
       groups_(lane_groups(air.wavelengths)), light_(2 * size.rows * size.azimuths * groups_ * kParts)
 {
-    pool.run(2 * size_.rows, [&](std::size_t index, unsigned) { fill(index, scattered); });
-}
-
-// Squares of equal steps from the horizon: the first row above looks along it, the first below just under it.
-double SkyView::mu_of(std::size_t index) const
-{
-    const bool sky = index < size_.rows;
-    const double t =
-        static_cast<double>(sky ? index : index - size_.rows) / static_cast<double>(size_.rows - 1);
-    const double mu = horizon_ + (sky ? 1 - horizon_ : -1 - horizon_) * t * t;
-    return sky ? std::max(mu, horizon_ + 1e-12) : std::min(mu, horizon_ - 1e-9);
+    pool.run(rows_.count(), [&](std::size_t index, unsigned) { fill(index, scattered); });
 }
 
 void SkyView::fill(std::size_t index, const ScatteredLight* scattered)
 {
-    const double mu = mu_of(index), sine = std::sqrt(std::max(0.0, (1 - mu) * (1 + mu)));
+    const double mu = rows_.mu(index), sine = std::sqrt(std::max(0.0, (1 - mu) * (1 + mu)));
     const PlanetRay ray(air_.radius_m, altitude_, mu);
     const LightPath whole = light_path(air_, nullptr, ray, size_.points);
     LightPath to_gather;
@@ -85,49 +75,67 @@ void SkyView::fill(std::size_t index, const ScatteredLight* scattered)
     }
 }
 
+template <typename Part>
+Lanes SkyView::lit(double mu, float sine, float azimuth_cosine, const Part& part) const
+{
+    const double nu = mu * mu_sun_ + static_cast<double>(sine * azimuth_cosine) * sun_sine_;
+    const double turned = std::clamp(nu, -1.0, 1.0);
+    return part(0) * splat(static_cast<float>(rayleigh_phase(turned))) +
+           part(1) * splat(static_cast<float>(mie_phase(air_.phase, air_.g, turned))) + part(2);
+}
+
 void SkyView::row(double mu, Row& row) const
 {
-    const bool sky = mu >= horizon_;
-    const double range = sky ? 1 - horizon_ : 1 + horizon_;
-    const double t = std::sqrt(std::clamp(std::abs(mu - horizon_) / std::max(1e-300, range), 0.0, 1.0));
-    const double at = t * static_cast<double>(size_.rows - 1);
-    const auto below = std::min(static_cast<std::size_t>(at), size_.rows - 2);
-    const Lanes share = splat(static_cast<float>(at - static_cast<double>(below)));
     const std::size_t width = size_.azimuths * groups_ * kParts;
-    const Lanes* const low = &light_[((sky ? 0 : size_.rows) + below) * width];
     row.view_ = this;
     row.mu_ = static_cast<float>(mu);
     row.sine_ = static_cast<float>(std::sqrt(std::max(0.0, (1 - mu) * (1 + mu))));
-    row.light_.resize(width);
+    row.light_.assign(width, Lanes{});
+    ViewRows::Place place;
+    if (!rows_.find(mu, place)) return;
+    const Lanes* const low = &light_[place.row * width];
     for (std::size_t i = 0; i < width; ++i)
-        row.light_[i] = low[i] + (low[i + width] - low[i]) * share;
+        row.light_[i] = low[i] + (low[i + width] - low[i]) * splat(place.share);
 }
 
 Lanes SkyView::Row::radiance(std::size_t group, float azimuth_cosine) const
 {
     const SkyView& view = *view_;
-    const float at =
-        arc_cosine(azimuth_cosine) * static_cast<float>(static_cast<double>(view.size_.azimuths - 1) / kPi);
-    const auto below = std::min(static_cast<std::size_t>(at), view.size_.azimuths - 2);
-    const Lanes share = splat(at - static_cast<float>(below));
+    const AnglePlace at = angle_place(arc_cosine(azimuth_cosine), view.size_.azimuths);
     const std::size_t step = view.groups_ * kParts;
-    const Lanes* const low = &light_[below * step + group * kParts];
-    const auto mix = [&](std::size_t part) { return low[part] + (low[step + part] - low[part]) * share; };
-    const double nu = static_cast<double>(mu_) * view.mu_sun_ +
-                      static_cast<double>(sine_ * azimuth_cosine) * view.sun_sine_;
-    const double turned = std::clamp(nu, -1.0, 1.0);
-    return mix(0) * splat(static_cast<float>(rayleigh_phase(turned))) +
-           mix(1) * splat(static_cast<float>(mie_phase(view.air_.phase, view.air_.g, turned))) + mix(2);
+    const Lanes* const low = &light_[at.column * step + group * kParts];
+    return view.lit(static_cast<double>(mu_), sine_, azimuth_cosine, [&](std::size_t part) {
+        return low[part] + (low[step + part] - low[part]) * splat(at.share);
+    });
+}
+
+void SkyView::radiance(double mu, float azimuth_cosine, Lanes* groups) const
+{
+    std::fill_n(groups, groups_, Lanes{});
+    ViewRows::Place place;
+    if (!rows_.find(mu, place)) return;
+    const AnglePlace at = angle_place(arc_cosine(azimuth_cosine), size_.azimuths);
+    const std::size_t step = groups_ * kParts, width = size_.azimuths * step;
+    const auto sine = static_cast<float>(std::sqrt(std::max(0.0, (1 - mu) * (1 + mu))));
+    for (std::size_t g = 0; g < groups_; ++g) {
+        const Lanes* const low = &light_[place.row * width + at.column * step + g * kParts];
+        const Lanes* const high = low + width;
+        groups[g] = lit(mu, sine, azimuth_cosine, [&](std::size_t part) {
+            const Lanes left = low[part] + (high[part] - low[part]) * splat(place.share);
+            const Lanes right =
+                low[step + part] + (high[step + part] - low[step + part]) * splat(place.share);
+            return left + (right - left) * splat(at.share);
+        });
+    }
 }
 
 Spectrum SkyView::radiance(double mu, double azimuth_cosine) const
 {
-    Row one;
-    row(mu, one);
+    std::array<Lanes, lane_groups(kMostWavelengths)> groups;
+    radiance(mu, static_cast<float>(std::clamp(azimuth_cosine, -1.0, 1.0)), groups.data());
     Spectrum result{};
     for (std::size_t w = 0; w < air_.wavelengths; ++w)
-        result[w] = static_cast<double>(
-            one.radiance(w / kLanes, static_cast<float>(std::clamp(azimuth_cosine, -1.0, 1.0)))[w % kLanes]);
+        result[w] = static_cast<double>(groups[w / kLanes][w % kLanes]);
     return result;
 }
 

@@ -120,10 +120,13 @@ double aspect_of(const renderer::ImageSettings& image)
     return static_cast<double>(image.width_px) / image.height_px;
 }
 
-JobOutcome picture_of(const JobRun& run, renderer::AssumedScene scene, const renderer::RenderResult& rendered)
+JobOutcome picture_of(const JobRun& run,
+                      renderer::AssumedScene scene,
+                      double exposure_ev,
+                      const renderer::RenderResult& rendered)
 {
     renderer::Picture picture{.image = rendered.film.mean(),
-                              .exposure_ev = run.request.settings.image.exposure_ev,
+                              .exposure_ev = exposure_ev,
                               .tone = run.request.settings.image.tone,
                               .texts = {}};
     for (auto& [keyword, text] :
@@ -188,8 +191,8 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     if (auto* problem = std::get_if<api::ProblemDetails>(&answer)) return std::move(*problem);
     if (std::holds_alternative<StoppedRun>(answer)) return StoppedRun{};
     auto& [imported, scene, plan] = std::get<Planned>(answer);
-    const auto prepared =
-        renderer::prepare(scene, plan, imported.meshes, settings, tools.pool, run.stop, imported.images);
+    const auto prepared = renderer::prepare(
+        scene, plan, imported.meshes, settings, tools.pool, run.stop, imported.images, tools.skies);
     if (!prepared || run.stop.stop_requested()) return StoppedRun{};
 
     run.running();
@@ -200,7 +203,7 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     rendered->report.notes = imported.notes;
     const std::uint64_t non_finite = rendered->report.numerics.non_finite_samples;
     if (non_finite != 0 && fails_on(run.request, "non_finite")) return non_finite_problem(non_finite);
-    return picture_of(run, std::move(scene), *rendered);
+    return picture_of(run, std::move(scene), plan.exposure_ev, *rendered);
 }
 
 std::variant<renderer::PlanReport, api::ProblemDetails, StoppedRun> plan_job(const JobRun& run,

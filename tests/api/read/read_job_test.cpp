@@ -205,14 +205,15 @@ TEST(ReadJob, SaysWhatWasMeant)
 
 TEST(ReadJob, SaysWhatIsAvailableInsteadOfWhatIsNot)
 {
-    const auto read = api::read_job(R"({"scene": {"environment": {"type": "atmosphere"}}})", {});
+    const auto read =
+        api::read_job(R"({"scene": {"objects": [{"shape": "sphere"}]}, "fail_on": ["target_missed"]})", {});
     const auto* problem = std::get_if<ProblemDetails>(&read);
     ASSERT_TRUE(problem);
     EXPECT_EQ(problem->status, 422);
     EXPECT_EQ(problem->code, "unsupported");
     ASSERT_EQ(problem->errors.size(), 1u);
     EXPECT_EQ(problem->errors[0].detail,
-              "\"atmosphere\" is not available in this build; available: none, color, image");
+              "\"target_missed\" is not available in this build; available: non_finite");
 }
 
 TEST(ReadJob, TellsRanges)

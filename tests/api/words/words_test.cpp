@@ -82,11 +82,11 @@ TEST(WordTables, HaveAWordForEachAlternative)
 
 TEST(WordTables, TellBuiltFromKnown)
 {
-    EXPECT_FALSE(api::find_word(api::words_for<renderer::Environment>(), "atmosphere")->built());
+    EXPECT_FALSE(api::find_word(api::fail_on_words(), "target_missed")->built());
     EXPECT_EQ(api::find_word(api::words_for<renderer::Environment>(), "fog"), nullptr);
-    const std::vector<std::string> built = api::names_of(api::words_for<renderer::Environment>());
-    EXPECT_EQ(std::count(built.begin(), built.end(), "color"), 1);
-    EXPECT_EQ(std::count(built.begin(), built.end(), "atmosphere"), 0);
+    const std::vector<std::string> built = api::names_of(api::fail_on_words());
+    EXPECT_EQ(std::count(built.begin(), built.end(), "non_finite"), 1);
+    EXPECT_EQ(std::count(built.begin(), built.end(), "target_missed"), 0);
 }
 
 } // namespace

@@ -197,12 +197,31 @@ private:
         return camera;
     }
 
+    renderer::AtmosphereDescription atmosphere()
+    {
+        renderer::AtmosphereDescription a =
+            renderer::atmosphere_preset(static_cast<renderer::AtmospherePreset>(whole(0, 4)));
+        if (coin()) a.wavelengths_nm = {700.5, 610, 530, 450};
+        if (coin()) a.planet.ground_albedo = {unit()};
+        if (coin()) a.rayleigh.scattering = {unit(), unit(), unit(), unit()};
+        if (a.rayleigh.scattering.size() == 4) a.wavelengths_nm = {700, 600, 500, 400};
+        a.mie.g = unit() * 1.8 - 0.9;
+        a.mie.phase = static_cast<renderer::MiePhase>(whole(0, 1));
+        a.sun = {unit() * 180 - 90, unit() * 360, color(3), unit(), coin()};
+        a.altitude_m = positive();
+        a.scattering = static_cast<renderer::SkyScattering>(whole(0, 1));
+        a.mode = static_cast<renderer::SkyMode>(whole(0, 2));
+        a.aerial_perspective = coin();
+        return a;
+    }
+
     void scene(JobRequest& job)
     {
         renderer::SceneDescription& scene = job.scene;
         if (coin()) scene.camera = camera();
         if (coin()) scene.environment = renderer::NoEnvironment{};
         if (coin()) scene.environment = renderer::ColorEnvironment{color(3)};
+        if (coin()) scene.environment = atmosphere();
         for (int i = 0; i < whole(0, 4); ++i)
             scene.materials.push_back({std::to_string(i) + text(), material()}); // sorted by name, as read
         const int objects = whole(1, 6);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 using namespace renderer;
 
@@ -124,4 +125,92 @@ TEST(SkyLight, AirBetweenPointsIsThatOfTheirWay)
     const Vec3d up = direction(50, 200);
     const Rgb sky = light.radiance(up);
     EXPECT_NEAR(light.between({0, 0, 0}, up * 90'000.0).added.b / sky.b, 1, 0.02);
+}
+
+TEST(SkyLight, LooksUpTheAirBeforeThings)
+{
+    ThreadPool pool(2);
+    AtmosphereDescription d = single(35);
+    const auto sky = std::make_shared<const Sky>(d, pool);
+    for (const Vec3d eye : {Vec3d{0, 2, 0}, Vec3d{500, 3000, -200}, Vec3d{0, 400'000, 0}}) {
+        const double far = eye.y > 1e5 ? 2e6 : 60'000;
+        const SkyLight light(d, sky, eye, far, pool);
+        tests::RandomNumbers random(9);
+        double sum2 = 0, mean = 0;
+        const int count = 200;
+        for (int i = 0; i < count; ++i) {
+            const bool above_air = eye.y > 1e5;
+            const Vec3d way = direction(random.between(-60, above_air ? -25 : 40), random.between(0, 360));
+            const double distance = above_air ? (eye.y - random.between(0, 60'000)) / -way.y
+                                              : far * std::pow(random.between(0, 1), 2);
+            const auto exact = light.between(eye, eye + way * distance);
+            if (eye.y + way.y * distance < 0) continue; // below the ground
+            const auto found = light.air_before(way, distance);
+            EXPECT_NEAR(found.transmittance.b, exact.transmittance.b, 4e-3f) << way.y << ' ' << distance;
+            sum2 += std::pow(static_cast<double>(found.added.b - exact.added.b), 2);
+            mean += static_cast<double>(exact.added.b) / count;
+        }
+        EXPECT_LT(std::sqrt(sum2 / count), 0.01 * mean) << eye.y;
+    }
+}
+
+TEST(SkyLight, AirBeforeThingsEndsWhereTheyStandOnTheGround)
+{
+    ThreadPool pool(1);
+    const AtmosphereDescription d = single(35);
+    const Vec3d eye{0, 2000, 0};
+    const SkyLight light(d, std::make_shared<const Sky>(d, pool), eye, 100'000, pool);
+    for (const double distance : {3000.0, 12'345.0, 50'000.0}) {
+        const double along = std::sqrt(distance * distance - eye.y * eye.y);
+        const Vec3d place{along, -along * along / (2 * 6.36e6), 0};
+        const double way = length(place - eye);
+        const auto exact = light.between(eye, place);
+        const auto found = light.air_before((place - eye) / way, way);
+        EXPECT_NEAR(found.transmittance.b, exact.transmittance.b, 2e-3f) << distance;
+        EXPECT_NEAR(found.added.b, exact.added.b, 0.01f * exact.added.b) << distance;
+    }
+}
+
+TEST(SkyLight, OfAnEyeFarAsideStandsOnItsOwnGround)
+{
+    // A tenth of the way around the planet the sun stands 36 degrees higher.
+    ThreadPool pool(2);
+    AtmosphereDescription here = single(20), there = single(56);
+    here.sun.azimuth_deg = there.sun.azimuth_deg = 90;
+    const double radius = here.planet.radius_m + 100;
+    const auto [sine, cosine] = sin_cos_deg(36);
+    const Vec3d eye{radius * sine, radius * cosine - here.planet.radius_m, 0};
+    const auto sky = std::make_shared<const Sky>(here, pool);
+    const SkyLight aside(here, sky, eye, 0, pool), upright(there, sky, {0, 100, 0}, 0, pool);
+    for (const double elevation : {-20.0, 5.0, 70.0})
+        for (const double azimuth : {10.0, 90.0, 200.0}) {
+            const Vec3d local = direction(elevation, azimuth);
+            const Vec3d turned{local.x * cosine + local.y * sine, local.y * cosine - local.x * sine, local.z};
+            EXPECT_NEAR(aside.radiance(turned).b / upright.radiance(local).b, 1, 1e-4)
+                << elevation << ' ' << azimuth;
+        }
+    EXPECT_NEAR(aside.sun_irradiance().g, upright.sun_irradiance().g, 1e-5f);
+}
+
+TEST(SkyLight, MeasuresItsTableAgainstQuadrature)
+{
+    ThreadPool pool(2);
+    for (const double elevation : {60.0, 3.0, -3.0}) {
+        AtmosphereDescription d = single(elevation);
+        const SkyLight light(d, pool);
+        EXPECT_GT(light.table_error(), 0) << elevation;
+        EXPECT_LT(light.table_error(), SkyLight::kTableError) << elevation;
+    }
+}
+
+TEST(SkyLight, SunThatHasHalfSetGivesHalfItsLight)
+{
+    ThreadPool pool(1);
+    const auto sky = std::make_shared<const Sky>(single(0), pool);
+    const SkyLight whole(single(0.3), sky, {}, 0, pool), half(single(0), sky, {}, 0, pool),
+        none(single(-0.3), sky, {}, 0, pool);
+    // Air takes more from what stands lower: less than half.
+    EXPECT_GT(half.mean_sun_radiance().r, 0.2f * whole.mean_sun_radiance().r);
+    EXPECT_LT(half.mean_sun_radiance().r, 0.5f * whole.mean_sun_radiance().r);
+    EXPECT_EQ(none.mean_sun_radiance().r, 0);
 }

@@ -1,0 +1,134 @@
+#include "renderer/plan/choose_sky.h"
+
+#include "renderer/color/strongest.h"
+#include "renderer/math/transcendental.h"
+#include "renderer/plan/world_bounds.h"
+#include "renderer/sky/air.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <variant>
+
+namespace renderer {
+
+namespace {
+
+// Of a picture's light, that air before things may be left out for.
+constexpr double kMostLeftOut = 0.01;
+
+const AtmosphereDescription* atmosphere_of(const SceneDescription& scene)
+{
+    return scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr;
+}
+
+std::string number(double x)
+{
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g", x);
+    return text.data();
+}
+
+// How far things are seen, and how low air lies before them.
+struct Depth {
+    double far_m = 0, lowest_m = 0;
+};
+
+Depth depth_of(const SceneDescription& scene, std::span<const MeshFacts> meshes)
+{
+    const Vec3d eye = scene.camera->position;
+    Depth depth{0, eye.y};
+    for (const ObjectDescription& object : scene.objects) {
+        if (object_bounds(object.shape, meshes).empty()) continue;
+        for (const Vec3d& corner : world_corners(object, meshes)) {
+            depth.far_m = std::max(depth.far_m, length(corner - eye));
+            depth.lowest_m = std::min(depth.lowest_m, corner.y);
+        }
+    }
+    return depth;
+}
+
+// Extinction per metre at the wavelength nearest to 550 nm, at an altitude.
+double extinction(const Air& air, double altitude)
+{
+    const auto nearest =
+        std::min_element(air.wavelength_nm.begin(), air.wavelength_nm.end(), [](double a, double b) {
+            return std::abs(a - 550) < std::abs(b - 550);
+        });
+    return air.optical_depth(static_cast<std::size_t>(nearest - air.wavelength_nm.begin()),
+                             air.density(std::max(0.0, altitude)));
+}
+
+} // namespace
+
+std::optional<SkyPlan>
+choose_sky(const SceneDescription& scene, std::span<const MeshFacts> meshes, ModelReport& models)
+{
+    const AtmosphereDescription* const a = atmosphere_of(scene);
+    if (a == nullptr) return std::nullopt;
+    SkyPlan plan;
+    plan.mode = a->mode == SkyMode::automatic ? SkyMode::fast : a->mode;
+    models.used.push_back(
+        {"atmosphere",
+         std::string("sky and sun by the air's scattering, from a table whose error the report tells; ") +
+             (a->mode == SkyMode::automatic ? "`mode` auto: the quick tables are exact enough for pictures"
+              : a->mode == SkyMode::fast    ? "`mode` asks for the quick tables"
+                                            : "`mode` asks for the exact ones")});
+    if (a->scattering == SkyScattering::multiple)
+        models.used.push_back(
+            {"multiple_scattering", "light that the air and the ground scatter again, every order"});
+    else
+        models.skipped.push_back({"multiple_scattering",
+                                  "`scattering` asks for single: 7 % (red) to 38 % (blue) "
+                                  "of a clear sky's irradiance, nearly all of twilight"});
+
+    const Depth depth = depth_of(scene, meshes);
+    const double bound = 1 - exp(-extinction(make_air(*a), a->altitude_m + depth.lowest_m) * depth.far_m);
+    const std::string seen = number(depth.far_m) + " m away at most: the air before it takes " +
+                             number(100 * bound) + " % at 550 nm at most";
+    if (!a->aerial_perspective)
+        models.skipped.push_back({"aerial_perspective", "the scene asks for none; things are " + seen});
+    else if (!(bound >= kMostLeftOut))
+        models.skipped.push_back({"aerial_perspective", "bound " + number(bound) + ": things are " + seen});
+    else {
+        plan.far_m = depth.far_m;
+        models.used.push_back(
+            {"aerial_perspective", "things are " + seen + "; between camera and things, not between things"});
+    }
+    return plan;
+}
+
+double choose_exposure(const ImageSettings& image, const SceneDescription& scene, ModelReport& models)
+{
+    if (image.exposure_ev) return *image.exposure_ev;
+    const AtmosphereDescription* const a = atmosphere_of(scene);
+    if (a == nullptr || !(strongest(a->sun.irradiance) > 0)) return 0;
+    // Day, sunset, twilight, night: about what keeps white things and the sky near the sun within a picture's range.
+    struct Stop {
+        double elevation_deg, ev;
+    };
+    constexpr std::array kStops{
+        Stop{-18, 10}, Stop{-10, 8}, Stop{-4, 5.5}, Stop{2, 3}, Stop{10, 1.8}, Stop{30, 1}};
+    double ev = kStops.back().ev;
+    if (a->sun.elevation_deg <= kStops.front().elevation_deg) ev = kStops.front().ev;
+    for (std::size_t i = 0; i + 1 < kStops.size(); ++i) {
+        const Stop &low = kStops[i], &high = kStops[i + 1];
+        if (a->sun.elevation_deg <= low.elevation_deg || a->sun.elevation_deg > high.elevation_deg) continue;
+        const double share =
+            (a->sun.elevation_deg - low.elevation_deg) / (high.elevation_deg - low.elevation_deg);
+        ev = low.ev + (high.ev - low.ev) * share;
+    }
+    // Beyond the air the sun stands in full light whatever its elevation.
+    const Air air = make_air(*a);
+    if (a->altitude_m + scene.camera->position.y > air.height_m) ev = kStops.back().ev;
+    constexpr double kUsualIrradiance = 1.5;
+    ev += log2(kUsualIrradiance / static_cast<double>(strongest(a->sun.irradiance)));
+    models.used.push_back(
+        {"assumed_exposure",
+         "no `exposure_ev` is given: " + number(ev) + " EV, for the sun's elevation and irradiance"});
+    return ev;
+}
+
+} // namespace renderer
