@@ -58,8 +58,9 @@ void AerialView::fill(std::size_t row, const ScatteredLight* scattered)
         for (std::size_t w = 0; w < air_.wavelengths; ++w)
             depth_[entry * groups_ + w / kLanes][w % kLanes] =
                 static_cast<float>(air_.optical_depth(w, columns));
-        const LightPath path =
+        LightPath path =
             scattered ? scattered->path(ray, far) : light_path(air_, nullptr, ray, kPoints, {}, far);
+        path.hits_ground = false; // what stands there is seen instead
         const std::size_t n = path.places.size();
         for (std::size_t a = 0; a < size_.azimuths; ++a) {
             const double cosine =

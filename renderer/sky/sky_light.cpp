@@ -70,7 +70,11 @@ SkyLight::SkyLight(const AtmosphereDescription& description,
                 : length(along - up_ * dot(up_, along)) > 0 ? normalize(along - up_ * dot(up_, along))
                                                             : basis_around(up_).first;
     make_view(pool);
-    if (far_m > 0) aerial_.emplace(air, sky_->columns(), sky_->scattered(), altitude_, mu_sun_, far_m, pool);
+    if (!(far_m > 0)) return;
+    // From beyond, a way begins where the air is thinnest and ends where it is thickest.
+    AerialSize size;
+    if (altitude_ > air.height_m) size.slices *= 3;
+    aerial_.emplace(air, sky_->columns(), sky_->scattered(), altitude_, mu_sun_, far_m, pool, size);
 }
 
 void SkyLight::make_view(ThreadPool& pool)

@@ -171,6 +171,22 @@ TEST(SkyLight, AirBeforeThingsEndsWhereTheyStandOnTheGround)
     }
 }
 
+TEST(SkyLight, AirBeforeThingsHasNoLightOfTheGroundThatTheyHide)
+{
+    // Of light that was scattered twice and more, and of the ground, which is white.
+    ThreadPool pool(2);
+    AtmosphereDescription d = single(35);
+    d.scattering = SkyScattering::multiple;
+    d.mode = SkyMode::fast;
+    d.planet.ground_albedo = {1};
+    const SkyLight light(d, std::make_shared<const Sky>(d, pool), {0, 100, 0}, 20'000, pool);
+    const Vec3d down = direction(-30, 20);
+    const float at_ground = light.air_before(down, 200).added.b,
+                halfway = light.air_before(down, 100).added.b;
+    EXPECT_NEAR(at_ground / halfway, 2, 0.05);
+    EXPECT_LT(at_ground, 0.02f * light.radiance(down).b);
+}
+
 TEST(SkyLight, OfAnEyeFarAsideStandsOnItsOwnGround)
 {
     // A tenth of the way around the planet the sun stands 36 degrees higher.
