@@ -208,6 +208,18 @@ TEST(SkyLight, OfAnEyeFarAsideStandsOnItsOwnGround)
     EXPECT_NEAR(aside.sun_irradiance().g, upright.sun_irradiance().g, 1e-5f);
 }
 
+TEST(SkyLight, OfAnEyeBelowTheGroundIsThatOnIt)
+{
+    ThreadPool pool(1);
+    const auto sky = std::make_shared<const Sky>(single(30), pool);
+    const SkyLight on(single(30), sky, {}, 0, pool);
+    for (const double below : {1e-9, 1.0, 5000.0}) {
+        const SkyLight under(single(30), sky, {0, -below, 0}, 0, pool);
+        for (const double elevation : {-40.0, 0.0, 3.0, 80.0})
+            EXPECT_EQ(under.radiance(direction(elevation, 50)).b, on.radiance(direction(elevation, 50)).b);
+    }
+}
+
 TEST(SkyLight, MeasuresItsTableAgainstQuadrature)
 {
     ThreadPool pool(2);
