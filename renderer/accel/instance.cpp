@@ -130,6 +130,14 @@ Ray Instance::to_object(const Ray& world_ray) const
             world_ray.t_max};
 }
 
+std::span<const Ray> Instance::to_object(std::span<const Ray> world_rays, Ray* room) const
+{
+    if (identity_) return world_rays;
+    for (std::size_t i = 0; i < world_rays.size(); ++i)
+        room[i] = to_object(world_rays[i]);
+    return {room, world_rays.size()};
+}
+
 std::optional<Instance::Candidate> Instance::closest_hit(const Ray& world_ray) const
 {
     const Ray ray = to_object(world_ray);
@@ -137,16 +145,11 @@ std::optional<Instance::Candidate> Instance::closest_hit(const Ray& world_ray) c
         if (const std::optional<double> t = intersect(shape, ray)) return Candidate{*t, 0, {}};
         return std::nullopt;
     };
-    const auto candidate = [](const std::optional<MeshHit>& hit) -> std::optional<Candidate> {
-        if (!hit) return std::nullopt;
-        return Candidate{hit->t, hit->primitive, hit->barycentrics};
-    };
-    return std::visit(
-        Overloaded{[&](const MeshGeometry& m) { return candidate(m.bvh->closest_hit(ray)); },
-                   [&](const BaselineGeometry& m) { return candidate(m.search->closest_hit(ray)); },
-                   [&](const Sphere& s) { return exact(s); },
-                   [&](const Disk& d) { return exact(d); }},
-        geometry_);
+    return std::visit(Overloaded{[&](const MeshGeometry& m) { return m.bvh->closest_hit(ray); },
+                                 [&](const BaselineGeometry& m) { return m.search->closest_hit(ray); },
+                                 [&](const Sphere& s) { return exact(s); },
+                                 [&](const Disk& d) { return exact(d); }},
+                      geometry_);
 }
 
 bool Instance::any_hit(const Ray& world_ray) const
@@ -161,19 +164,11 @@ bool Instance::any_hit(const Ray& world_ray) const
 
 std::uint64_t Instance::closest_hits(std::span<const Ray> world_rays, Candidate* hits) const
 {
-    std::uint64_t found = 0;
     if (const auto* mesh = std::get_if<MeshGeometry>(&geometry_)) {
         Ray rays[kMostRays];
-        MeshHit met[kMostRays];
-        for (std::size_t i = 0; i < world_rays.size(); ++i)
-            rays[i] = to_object(world_rays[i]);
-        found = mesh->bvh->closest_hits({rays, world_rays.size()}, met);
-        for (std::uint64_t left = found; left != 0; left &= left - 1) {
-            const MeshHit& hit = met[__builtin_ctzll(left)];
-            hits[__builtin_ctzll(left)] = {hit.t, hit.primitive, hit.barycentrics};
-        }
-        return found;
+        return mesh->bvh->closest_hits(to_object(world_rays, rays), {hits, world_rays.size()});
     }
+    std::uint64_t found = 0;
     for (std::size_t i = 0; i < world_rays.size(); ++i)
         if (const std::optional<Candidate> hit = closest_hit(world_rays[i])) {
             hits[i] = *hit;
@@ -187,9 +182,7 @@ std::uint64_t Instance::any_hits(std::span<const Ray> world_rays) const
     std::uint64_t found = 0;
     if (const auto* mesh = std::get_if<MeshGeometry>(&geometry_)) {
         Ray rays[kMostRays];
-        for (std::size_t i = 0; i < world_rays.size(); ++i)
-            rays[i] = to_object(world_rays[i]);
-        return mesh->bvh->any_hits({rays, world_rays.size()});
+        return mesh->bvh->any_hits(to_object(world_rays, rays));
     }
     for (std::size_t i = 0; i < world_rays.size(); ++i)
         if (any_hit(world_rays[i])) found |= std::uint64_t{1} << i;
@@ -213,9 +206,7 @@ SurfacePoint Instance::to_world(const SurfacePoint& object_point) const
 SceneHit Instance::resolve(const Ray& world_ray, const Candidate& candidate) const
 {
     const auto exact = [&](const auto& shape) { return point_at(shape, to_object(world_ray), candidate.t); };
-    const auto on_mesh = [&](const Mesh& mesh) {
-        return surface_point(mesh, {candidate.t, candidate.primitive, candidate.barycentrics});
-    };
+    const auto on_mesh = [&](const Mesh& mesh) { return surface_point(mesh, candidate); };
     const SurfacePoint object =
         std::visit(Overloaded{[&](const MeshGeometry& m) { return on_mesh(*m.mesh); },
                               [&](const BaselineGeometry& m) { return on_mesh(*m.mesh); },

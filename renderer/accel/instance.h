@@ -54,11 +54,7 @@ public:
     const InstanceGeometry& geometry() const { return geometry_; }
 
     // A hit before it is worked out: enough to compare. The ray is in the world.
-    struct Candidate {
-        double t;
-        std::uint32_t primitive;
-        Vec3d barycentrics;
-    };
+    using Candidate = MeshHit; // of a sphere or disk: t alone
     std::optional<Candidate> closest_hit(const Ray& world_ray) const;
     bool any_hit(const Ray& world_ray) const;
     // The same for a run of at most kMostRays rays: bit i of the result is set where ray i hit, and hits[i] says
@@ -75,6 +71,7 @@ private:
              const Affine3& object_from_world,
              bool visible_to_camera);
     Ray to_object(const Ray& world_ray) const;
+    std::span<const Ray> to_object(std::span<const Ray> world_rays, Ray* room) const; // in `room`, if need be
     SurfacePoint to_world(const SurfacePoint& object_point) const;
     Vec3d round_trip_error(Vec3d world_reach) const;
     static Affine3 error_of_round_trip(const Affine3& world_from_object, const Affine3& object_from_world);

@@ -10,27 +10,50 @@ namespace renderer {
 
 struct InstanceTree::Best {
     bool found = false;
+    std::uint32_t asked = 0;
     std::uint32_t instance = 0;
     Instance::Candidate candidate{};
 
     // Takes the hit if it is nearer, or as near and of an earlier instance.
-    bool improve(std::uint32_t number, const Instance::Candidate& hit)
+    bool improve(const InstanceTree& tree, std::uint32_t number, const Instance::Candidate& hit)
     {
-        if (found && (hit.t > candidate.t || (hit.t == candidate.t && number > instance))) return false;
-        *this = {true, number, hit};
+        if (found && hit.t > candidate.t) return false;
+        const std::uint32_t of =
+            number < tree.instances_.size() ? number : tree.joined_->instance_of(hit.primitive);
+        if (found && hit.t == candidate.t && of > instance) return false;
+        *this = {true, number, of, hit};
         return true;
     }
 };
 
-InstanceTree::InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool)
-    : InstanceTree(std::move(instances))
+InstanceTree::InstanceTree(std::vector<Instance> instances, std::optional<JoinedMesh> joined)
+    : instances_(std::move(instances)), joined_(std::move(joined))
 {
-    PlainArray<BuildItem<double>> items(instances_.size());
+    if (!joined_) return;
+    is_joined_.resize(instances_.size());
+    for (const JoinedMesh::Member& member : joined_->members())
+        is_joined_[member.instance] = 1;
+}
+
+Bounds3d InstanceTree::box_to_meet(std::uint32_t number) const
+{
+    const bool is_elsewhere = number < is_joined_.size() && is_joined_[number] != 0;
+    return is_elsewhere ? Bounds3d{} : asked(number).world_bounds();
+}
+
+InstanceTree::InstanceTree(std::vector<Instance> instances,
+                           BvhSplit split,
+                           ThreadPool& pool,
+                           std::optional<JoinedMesh> joined)
+    : InstanceTree(std::move(instances), std::move(joined))
+{
+    PlainArray<BuildItem<double>> items(asked_count());
     constexpr std::size_t kShare = 1024; // instances that a thread takes at once
     pool.run((items.size() + kShare - 1) / kShare, [&](std::size_t share, unsigned) {
         for (std::size_t i = share * kShare; i < std::min(items.size(), (share + 1) * kShare); ++i) {
-            const Bounds3d box = instances_[i].world_bounds();
-            items[i] = {box.lower, static_cast<std::uint32_t>(i), box.upper};
+            const auto number = static_cast<std::uint32_t>(i);
+            const Bounds3d box = box_to_meet(number);
+            items[i] = {box.lower, number, box.upper};
         }
     });
     std::size_t count = 0;
@@ -44,12 +67,13 @@ InstanceTree::InstanceTree(std::vector<Instance> instances, BvhSplit split, Thre
     bvh_ = *build_bvh<double>(std::move(items), {.split = split, .leaf_size = 1}, pool);
 }
 
-InstanceTree InstanceTree::list(std::vector<Instance> instances, bool boxes_first)
+InstanceTree
+InstanceTree::list(std::vector<Instance> instances, bool boxes_first, std::optional<JoinedMesh> joined)
 {
-    InstanceTree tree(std::move(instances));
+    InstanceTree tree(std::move(instances), std::move(joined));
     tree.boxes_first_ = boxes_first;
-    for (std::uint32_t i = 0; i < tree.instances_.size(); ++i) {
-        const Bounds3d box = tree.instances_[i].world_bounds();
+    for (std::uint32_t i = 0; i < tree.asked_count(); ++i) {
+        const Bounds3d box = tree.box_to_meet(i);
         if (box.empty()) continue;
         tree.bounds_.extend(box);
         tree.listed_.push_back({i, box});
@@ -59,13 +83,15 @@ InstanceTree InstanceTree::list(std::vector<Instance> instances, bool boxes_firs
 
 void InstanceTree::consider(const Ray& ray, RayKind kind, std::uint32_t number, Best& best) const
 {
-    if (!instances_[number].visible_to(kind)) return;
-    const std::optional<Instance::Candidate> hit = instances_[number].closest_hit(ray);
-    if (hit) best.improve(number, *hit);
+    const Instance& instance = asked(number);
+    if (!instance.visible_to(kind)) return;
+    if (const std::optional<Instance::Candidate> hit = instance.closest_hit(ray))
+        best.improve(*this, number, *hit);
 }
 
 SceneHit InstanceTree::resolve(const Ray& ray, const Best& best) const
 {
+    if (best.asked >= instances_.size()) return joined_->resolve(best.candidate, instances_);
     SceneHit hit = instances_[best.instance].resolve(ray, best.candidate);
     hit.instance = best.instance;
     return hit;
@@ -138,13 +164,13 @@ std::optional<SceneHit> InstanceTree::closest_hit(const Ray& ray, RayKind kind) 
 bool InstanceTree::any_hit(const Ray& ray, RayKind kind) const
 {
     if (bvh_.order.size() == 1) {
-        const Instance& only = instances_[bvh_.order[0]];
+        const Instance& only = asked(bvh_.order[0]);
         return only.visible_to(kind) && only.any_hit(ray);
     }
     bool found = false;
     if (!listed_.empty())
         ask_listed(ray, ray.t_max, [&](std::uint32_t number) {
-            return found = instances_[number].visible_to(kind) && instances_[number].any_hit(ray);
+            return found = asked(number).visible_to(kind) && asked(number).any_hit(ray);
         });
     if (bvh_.empty() || !is_traceable(ray)) return found;
     traverse(bvh_,
@@ -153,7 +179,7 @@ bool InstanceTree::any_hit(const Ray& ray, RayKind kind) const
              ray.t_max,
              [&](std::uint32_t first, std::uint32_t count, double&) {
                  for (std::uint32_t i = first; i < first + count && !found; ++i) {
-                     const Instance& instance = instances_[bvh_.order[i]];
+                     const Instance& instance = asked(bvh_.order[i]);
                      found = instance.visible_to(kind) && instance.any_hit(ray);
                  }
                  return found;
@@ -291,7 +317,7 @@ private:
     // `rays` may be done by now, all the same: what they find is no better.
     void ask(std::uint32_t number, std::uint64_t rays)
     {
-        const Instance& instance = tree_.instances_[number];
+        const Instance& instance = tree_.asked(number);
         if (kAnyHit) rays &= ~found_;
         if (rays == 0 || !instance.visible_to(kind_)) return;
         Ray asking[kMostRays];
@@ -315,7 +341,7 @@ private:
         for (std::uint64_t met = instance.closest_hits({asking, count}, hits); met != 0; met &= met - 1) {
             const auto i = static_cast<unsigned>(__builtin_ctzll(met));
             Best& best = best_[from[i]];
-            if (!best.improve(number, hits[i])) continue;
+            if (!best.improve(tree_, number, hits[i])) continue;
             found_ |= std::uint64_t{1} << from[i];
             boxes_.end[from[i]] = hits[i].t;
         }
@@ -335,13 +361,13 @@ InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, 
 {
     if (bvh_.order.size() == 1) {
         const std::uint32_t number = bvh_.order[0];
-        const Instance& only = instances_[number];
+        const Instance& only = asked(number);
         if (!only.visible_to(kind)) return 0;
         Instance::Candidate found[kMostRays];
         const std::uint64_t met = only.closest_hits(rays, found);
         for (std::uint64_t left = met; left != 0; left &= left - 1) {
             const auto i = static_cast<unsigned>(__builtin_ctzll(left));
-            hits[i] = resolve(rays[i], {true, number, found[i]});
+            hits[i] = resolve(rays[i], {true, number, number, found[i]});
         }
         return met;
     }
@@ -357,7 +383,7 @@ InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, 
 std::uint64_t InstanceTree::any_hits(std::span<const Ray> rays, RayKind kind) const
 {
     if (bvh_.order.size() == 1) {
-        const Instance& only = instances_[bvh_.order[0]];
+        const Instance& only = asked(bvh_.order[0]);
         return only.visible_to(kind) ? only.any_hits(rays) : 0;
     }
     RunWalk<true> run(*this, rays, kind);
@@ -368,8 +394,8 @@ std::uint64_t InstanceTree::any_hits(std::span<const Ray> rays, RayKind kind) co
 std::optional<SceneHit> InstanceTree::closest_hit_brute_force(const Ray& ray, RayKind kind) const
 {
     Best best;
-    for (std::uint32_t i = 0; i < instances_.size(); ++i)
-        consider(ray, kind, i, best);
+    for (std::uint32_t i = 0; i < asked_count(); ++i)
+        if (!box_to_meet(i).empty()) consider(ray, kind, i, best);
     if (!best.found) return std::nullopt;
     return resolve(ray, best);
 }

@@ -3,12 +3,14 @@
 // Frame      the world, in double.
 // Ties       the least (t, instance, primitive) wins, whatever the order of the tree.
 // Threads    immutable; rays may be traced from any number of threads.
+// Joined     instances whose meshes were put together (joined_mesh.h) are met there alone, and told apart again.
 // Cost       one instance alone is asked directly: the level costs nothing where a scene does not need it. A list,
 //            for measuring, asks every instance.
 #pragma once
 
 #include "renderer/accel/bvh.h"
 #include "renderer/accel/instance.h"
+#include "renderer/accel/joined_mesh.h"
 
 #include <optional>
 #include <span>
@@ -20,9 +22,13 @@ namespace renderer {
 class InstanceTree {
 public:
     // Instances keep their numbers; those with nothing to hit are never found.
-    InstanceTree(std::vector<Instance> instances, BvhSplit split, ThreadPool& pool);
+    InstanceTree(std::vector<Instance> instances,
+                 BvhSplit split,
+                 ThreadPool& pool,
+                 std::optional<JoinedMesh> joined = std::nullopt);
     // No tree: every instance in turn; `boxes_first`: only those whose box the ray meets.
-    static InstanceTree list(std::vector<Instance> instances, bool boxes_first);
+    static InstanceTree
+    list(std::vector<Instance> instances, bool boxes_first, std::optional<JoinedMesh> joined = std::nullopt);
 
     std::optional<SceneHit> closest_hit(const Ray& ray, RayKind kind = RayKind::other) const;
     bool any_hit(const Ray& ray, RayKind kind = RayKind::other) const;
@@ -32,7 +38,7 @@ public:
     closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, RayKind kind = RayKind::other) const;
     std::uint64_t any_hits(std::span<const Ray> rays, RayKind kind = RayKind::other) const;
     static constexpr unsigned kMostRays = Instance::kMostRays;
-    // The same answer from every instance in turn: for tests and for measuring.
+    // The same answer from every instance, and what is joined, in turn: for tests and for measuring.
     std::optional<SceneHit> closest_hit_brute_force(const Ray& ray, RayKind kind = RayKind::other) const;
 
     std::span<const Instance> instances() const { return instances_; }
@@ -40,7 +46,7 @@ public:
     std::uint64_t size_bytes() const
     {
         return bvh_.size_bytes() + instances_.capacity() * sizeof(Instance) +
-               listed_.capacity() * sizeof(Listed);
+               listed_.capacity() * sizeof(Listed) + (joined_ ? joined_->size_bytes() : 0);
     }
 
 private:
@@ -51,7 +57,17 @@ private:
     };
     template <bool kAnyHit>
     class RunWalk;
-    explicit InstanceTree(std::vector<Instance> instances) : instances_(std::move(instances)) {}
+    InstanceTree(std::vector<Instance> instances, std::optional<JoinedMesh> joined);
+    // What is asked: instances by their numbers, and after the last of them what is joined of them.
+    std::uint32_t asked_count() const
+    {
+        return static_cast<std::uint32_t>(instances_.size() + (joined_ ? 1 : 0));
+    }
+    const Instance& asked(std::uint32_t number) const
+    {
+        return number < instances_.size() ? instances_[number] : joined_->instance();
+    }
+    Bounds3d box_to_meet(std::uint32_t number) const; // empty: nothing is met there
     // Calls ask(instance) until it returns true, for those in the list that the ray may hit before `end`.
     template <typename Ask>
     void ask_listed(const Ray& ray, const double& end, Ask&& ask) const;
@@ -59,8 +75,10 @@ private:
     SceneHit resolve(const Ray& ray, const Best& best) const; // one that was found
 
     std::vector<Instance> instances_;
-    Bvh<double> bvh_;            // `order` holds instance numbers
-    std::vector<Listed> listed_; // instead of the tree
+    std::optional<JoinedMesh> joined_;
+    std::vector<std::uint8_t> is_joined_; // by instance; or none
+    Bvh<double> bvh_;                     // `order` holds instance numbers
+    std::vector<Listed> listed_;          // instead of the tree
     bool boxes_first_ = false;
     Bounds3d bounds_;
 };

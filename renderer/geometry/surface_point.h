@@ -24,5 +24,7 @@ Vec3d offset_origin(const SurfacePoint& from, Vec3d direction);
 // Corner form: the point of triangle a, b, c with the given weights (any winding; the normal is along (b-a) x
 // (c-a)).
 SurfacePoint triangle_point(Vec3d a, Vec3d b, Vec3d c, Vec3d barycentrics);
+// The same without its normal, for those who know it.
+SurfacePoint weighted_point(Vec3d a, Vec3d b, Vec3d c, Vec3d barycentrics);
 
 } // namespace renderer

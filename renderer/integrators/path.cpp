@@ -171,8 +171,9 @@ private:
         std::size_t kept = 0;
         for (std::size_t i = 0; i < turns_; ++i) {
             Turn& turn = turn_[i];
-            if (turn.passes ? pass(turn) : scatter(turn))
-                paths_[kept++] = *turn.path; // turns are in the paths' order
+            if (!(turn.passes ? pass(turn) : scatter(turn))) continue;
+            if (turn.path != &paths_[kept]) paths_[kept] = *turn.path; // turns are in the paths' order
+            ++kept;
         }
         count_ = kept;
     }

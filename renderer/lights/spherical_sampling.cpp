@@ -9,6 +9,19 @@ namespace renderer {
 
 namespace {
 
+double sine_of(double cosine)
+{
+    return std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
+}
+
+// acos(a) + acos(b), as the angle of the product of the complex numbers that have these: from 0 to 2 pi.
+double sum_of_arc_cosines(double a, double b)
+{
+    const double sa = sine_of(a), sb = sine_of(b);
+    const double angle = atan2(sa * b + a * sb, a * b - sa * sb);
+    return angle < 0 ? angle + 2 * kPi : angle;
+}
+
 // Angle between two directions that need not be unit: keeps its digits for small and for flat angles.
 double angle_between(Vec3d a, Vec3d b)
 {
@@ -83,9 +96,8 @@ SphericalRectangle::SphericalRectangle(Vec3d corner, Vec3d side_u, Vec3d side_v)
     const double b1 = x1_ / n1, b2 = y1_ / n2, b3 = -x0_ / n3;
     b1_ = b2;
     // Inner angles: the sides are at right angles, so the normals' other parts are too.
-    const double g0 = acos(-b0_ * b1), g1 = acos(-b1 * b2), g2 = acos(-b2 * b3), g3 = acos(-b3 * b0_);
-    k_ = 2 * kPi - g2 - g3;
-    solid_angle_ = std::max(0.0, g0 + g1 - k_);
+    k_ = 2 * kPi - sum_of_arc_cosines(-b2 * b3, -b3 * b0_);
+    solid_angle_ = std::max(0.0, sum_of_arc_cosines(-b0_ * b1, -b1 * b2) - k_);
 }
 
 Vec3d SphericalRectangle::sample(Sample2 u) const

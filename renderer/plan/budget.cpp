@@ -1,6 +1,6 @@
 #include "renderer/plan/budget.h"
 
-#include "renderer/geometry/shapes.h"
+#include "renderer/plan/joined_objects.h"
 
 #include <algorithm>
 #include <set>
@@ -24,6 +24,9 @@ constexpr std::uint64_t kBuildingBytesPerTriangle = 28;
 // What the scene's own words take, and how an object is shaded.
 constexpr std::uint64_t kBytesPerObject = kInstanceBytes + sizeof(ObjectDescription) + 96;
 constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle = 48;
+// Three corners of their own, indices, and where it came from; residuals.
+constexpr std::uint64_t kJoinedBytesPerTriangle =
+    3 * 12 + 12 + 32 + 3 * kResidualBytesPerVertex + kResidualBytesPerTriangle;
 
 // Parts that name the same triangles share a tree; one that names all has the mesh's own.
 std::uint64_t triangles_of_parts(const SceneDescription& scene, std::span<const MeshFacts> meshes)
@@ -41,19 +44,6 @@ std::uint64_t triangles_of_parts(const SceneDescription& scene, std::span<const 
             triangles += run.triangle_count;
     }
     return triangles;
-}
-
-// Of an object; those of a mesh that is not known yet are not counted.
-std::uint64_t triangles_of(const Shape& shape, std::span<const MeshFacts> meshes)
-{
-    if (std::holds_alternative<BoxShape>(shape)) return unit_box().triangles.size();
-    if (std::holds_alternative<RectangleShape>(shape)) return unit_rectangle().triangles.size();
-    const auto* const mesh = std::get_if<MeshShape>(&shape);
-    if (mesh == nullptr || mesh->mesh >= meshes.size()) return 0;
-    const MeshFacts& facts = meshes[mesh->mesh];
-    if (mesh->part.empty()) return facts.triangles;
-    const auto part = facts.parts.find(mesh->part);
-    return part == facts.parts.end() ? 0 : part->second.triangle_count;
 }
 
 std::string refused(std::uint64_t value, const std::string& what, const char* limit_name, std::uint64_t limit)
@@ -119,7 +109,9 @@ Budget predict(const SceneDescription& scene,
                             : std::uint64_t{image.width_px} * image.height_px;
     b.film_bytes = b.pixels * kFilmBytesPerPixel + kMergeBytes;
     b.mesh_bytes = scene.objects.size() * kBytesPerObject + tree_bytes(triangles_of_parts(scene, meshes));
-    b.building_bytes = scene.objects.size() * kInstanceBuildingBytes;
+    const std::uint64_t joined = most_joined_triangles(scene, meshes);
+    b.mesh_bytes += tree_bytes(joined) + joined * kJoinedBytesPerTriangle;
+    b.building_bytes = std::max(scene.objects.size() * kInstanceBuildingBytes, tree_building_bytes(joined));
     for (const MeshFacts& facts : meshes)
         add_mesh(b, facts);
     if (const auto* const sky =

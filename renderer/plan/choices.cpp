@@ -105,8 +105,10 @@ public:
               const SceneDescription& scene,
               const RenderSettings& settings,
               const Budget& budget,
+              const JoinedObjects& joined,
               TransportChoice transport)
-        : c_(census), scene_(scene), settings_(settings), budget_(budget), transport_(std::move(transport))
+        : c_(census), scene_(scene), settings_(settings), budget_(budget), joined_(joined),
+          transport_(std::move(transport))
     {
     }
 
@@ -178,11 +180,17 @@ private:
         const AccelerationSettings& asked = settings_.acceleration;
         if (asked.levels != BvhLevels::two)
             skip("two_level_bvh", "`acceleration` asks for no tree over the objects");
+        else if (joined_.count != 0 && joined_.count == c_.objects + c_.area)
+            skip("two_level_bvh", "all objects are joined in one mesh, which is asked directly");
         else if (c_.objects > 1)
             use("two_level_bvh", "objects are placed over their meshes' own trees, so instances share one");
         else
             skip("two_level_bvh",
                  c_.objects == 1 ? "a single object is asked directly" : "there is no object to be found");
+        if (joined_.count != 0)
+            use("joined_objects",
+                of(joined_.count, "small object") + " with " + std::to_string(joined_.triangles) +
+                    " triangles in all are traced as one mesh in the scene's frame");
         if (asked.levels != BvhLevels::two)
             use("object_list",
                 std::string("`acceleration` asks for it: a ray asks every object") +
@@ -295,6 +303,7 @@ private:
     const SceneDescription& scene_;
     const RenderSettings& settings_;
     const Budget& budget_;
+    const JoinedObjects& joined_;
     TransportChoice transport_;
     ModelReport out_;
 };
@@ -305,10 +314,12 @@ ModelReport explain(const AssumedScene& scene,
                     std::span<const MeshFacts> meshes,
                     const RenderSettings& settings,
                     const Budget& budget,
+                    const JoinedObjects& joined,
                     TransportChoice transport)
 {
     const Census census = census_of(scene.description, meshes);
-    return Explainer(census, scene.description, settings, budget, std::move(transport)).run(scene.assumed);
+    return Explainer(census, scene.description, settings, budget, joined, std::move(transport))
+        .run(scene.assumed);
 }
 
 } // namespace renderer

@@ -14,6 +14,7 @@ ModelReport explain(const AssumedScene& scene,
                     std::span<const MeshFacts> meshes,
                     const RenderSettings& settings,
                     const Budget& budget,
+                    const JoinedObjects& joined,
                     TransportChoice transport);
 
 } // namespace renderer

@@ -5,6 +5,7 @@
 #include "renderer/plan/choose_sky.h"
 #include "renderer/plan/choose_transport.h"
 #include "renderer/plan/explain_numerics.h"
+#include "renderer/plan/joined_objects.h"
 #include "renderer/plan/plan.h"
 #include "renderer/plan/predict_cost.h"
 #include "renderer/plan/world_frame.h"
@@ -35,9 +36,10 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     if (description.transport.clamp) plan.clamp = static_cast<float>(*description.transport.clamp);
     plan.picks_lights = transport.picks_lights;
     plan.world_origin = choose_world_origin(description, meshes);
+    plan.joined = choose_joined(description, meshes, plan.world_origin);
     plan.precision = corner_precision(description, meshes);
     plan.prediction = predict_cost(description, settings, budget, transport);
-    plan.models = explain(scene, meshes, settings, budget, std::move(transport));
+    plan.models = explain(scene, meshes, settings, budget, plan.joined, std::move(transport));
     plan.sky = choose_sky(description, meshes, plan.models);
     plan.exposure_ev = choose_exposure(settings.image, description, plan.models);
     explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);

@@ -79,12 +79,20 @@ struct SkyPlan {
     double far_m = 0;
 };
 
+// Small objects, and lights with a shape, whose triangles are traced as one mesh: see joined_objects.h.
+struct JoinedObjects {
+    std::vector<bool> objects, lights; // one each of the description's
+    std::size_t count = 0;
+    std::uint64_t triangles = 0;
+};
+
 struct Plan {
     Integrator integrator = Integrator::direct;
     std::uint32_t max_depth = 1; // scatterings, see description/transport.h
     float clamp = std::numeric_limits<float>::infinity();
-    bool picks_lights = false;  // by a tree, one a point; else each is asked
-    Vec3d world_origin{};       // of the frame that is traced in, in the world: see world_frame.h
+    bool picks_lights = false; // by a tree, one a point; else each is asked
+    Vec3d world_origin{};      // of the frame that is traced in, in the world: see world_frame.h
+    JoinedObjects joined;
     std::optional<SkyPlan> sky; // where the environment is an atmosphere
     double exposure_ev = 0;     // of a picture
     std::string precision;      // of the meshes' corners: "float", "double" or "mixed"

@@ -16,11 +16,23 @@ std::uint64_t mix(std::uint64_t x)
 
 std::uint32_t reverse_bits(std::uint32_t x)
 {
-    x = (x >> 16) | (x << 16);
-    x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
-    x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
-    x = ((x & 0xccccccccu) >> 2) | ((x & 0x33333333u) << 2);
-    return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
+    x = __builtin_bswap32(x);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+}
+
+// Two fractions, side by side in one word, are reversed at the price of one.
+struct Pair {
+    std::uint32_t x, y;
+};
+Pair reverse_bits(Pair pair)
+{
+    std::uint64_t v = __builtin_bswap64(std::uint64_t{pair.x} << 32 | pair.y); // x comes out below
+    v = ((v >> 4) & 0x0f0f0f0f0f0f0f0fu) | ((v & 0x0f0f0f0f0f0f0f0fu) << 4);
+    v = ((v >> 2) & 0x3333333333333333u) | ((v & 0x3333333333333333u) << 2);
+    v = ((v >> 1) & 0x5555555555555555u) | ((v & 0x5555555555555555u) << 1);
+    return {static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(v >> 32)};
 }
 
 // Owen scrambling of a bit-reversed fraction: a bit depends on itself and on lower bits alone.
@@ -94,7 +106,10 @@ Sample2 PixelSampler::sample_2d(std::uint32_t sample, std::uint32_t dimension) c
 {
     const Seeds seeds = seeds_of(pixel_key_, dimension);
     const std::uint32_t x = scramble_reversed(reverse_bits(sample), seeds.shuffle);
-    return {to_unit(owen_scramble(x, seeds.x)), to_unit(owen_scramble(second_from_first(x), seeds.y))};
+    const Pair reversed = reverse_bits(Pair{x, second_from_first(x)});
+    const Pair drawn =
+        reverse_bits(Pair{scramble_reversed(reversed.x, seeds.x), scramble_reversed(reversed.y, seeds.y)});
+    return {to_unit(drawn.x), to_unit(drawn.y)};
 }
 
 } // namespace renderer

@@ -47,13 +47,14 @@ Light moved(Light light, Vec3d world_origin)
 class Preparation {
 public:
     Preparation(const SceneDescription& scene,
-                Vec3d world_origin,
+                const Plan& plan,
                 std::span<const SharedMesh> meshes,
                 std::span<const SharedImage> images,
                 MeshTree tree,
                 ThreadPool& pool,
                 const std::stop_token& stop)
-        : scene_(scene), world_origin_(world_origin), meshes_(meshes), tree_(tree), pool_(pool), stop_(stop)
+        : scene_(scene), plan_(plan), world_origin_(plan.world_origin), meshes_(meshes), tree_(tree),
+          pool_(pool), stop_(stop)
     {
         for (const NamedMaterial& material : scene.materials)
             add_material(of_scene(material.material), images);
@@ -64,18 +65,20 @@ public:
     // Every object of the scene, and every light that has a shape; false if `stop` was requested.
     bool run()
     {
-        for (const ObjectDescription& object : scene_.objects) {
+        for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
+            const ObjectDescription& object = scene_.objects[i];
             if (object.material && is_nothing(*object.material)) continue;
-            if (stop_.stop_requested() || !add(object)) return false;
+            if (stop_.stop_requested() || !add(object, is_chosen(plan_.joined.objects, i))) return false;
         }
-        for (const Light& light : scene_.lights)
-            if (!add(light)) return false;
-        return true;
+        for (std::size_t i = 0; i < scene_.lights.size(); ++i)
+            if (!add(scene_.lights[i], is_chosen(plan_.joined.lights, i))) return false;
+        return join();
     }
 
     std::vector<Bsdf> bsdfs;
     SurfaceTextures textures;
     std::vector<Instance> instances;
+    std::optional<JoinedMesh> joined; // of them, the small ones
     std::vector<Scene::Parts::Look> looks;
     SceneLights lights;
     std::vector<SharedMesh> held;
@@ -83,6 +86,11 @@ public:
     NumericsReport numerics;
 
 private:
+    static bool is_chosen(const std::vector<bool>& joined, std::size_t i)
+    {
+        return i < joined.size() && joined[i];
+    }
+
     static TexturedMaterial of_scene(const Material& material)
     {
         TexturedMaterial textured{.material = material};
@@ -118,8 +126,16 @@ private:
                std::all_of(scene_.materials.begin(), scene_.materials.end(), is_clear);
     }
 
+    bool join()
+    {
+        if (members_.size() < 2) return true;
+        joined = JoinedMesh::join(instances, members_, tree_, pool_, stop_);
+        return joined.has_value();
+    }
+
     // `bsdf`: of a light's own shape, instead of a material.
-    bool add(const ObjectDescription& object, std::optional<std::uint32_t> bsdf = std::nullopt)
+    bool
+    add(const ObjectDescription& object, bool is_joined, std::optional<std::uint32_t> bsdf = std::nullopt)
     {
         const auto found = geometry_of(object.shape);
         if (!found) return false;
@@ -132,6 +148,7 @@ private:
             throw std::invalid_argument("prepare: an object's transform is singular; make_plan refuses it");
         const auto number = static_cast<std::uint32_t>(instances.size());
         instances.push_back(*instance);
+        if (is_joined) members_.push_back({number, {run.first_triangle, run.triangle_count}});
         Scene::Parts::Look look;
         if (object.shading != Shading::flat && own != nullptr && !own->normals.empty()) look.normals_of = own;
         if (bsdf || object.material) {
@@ -177,7 +194,7 @@ private:
         }
     }
 
-    bool add(const Light& light)
+    bool add(const Light& light, bool is_joined)
     {
         if (const auto* const sun = std::get_if<SunLight>(&light)) {
             lights.suns.push_back(prepare_sun(*sun));
@@ -191,7 +208,7 @@ private:
         const std::size_t first = lights.emitters.size();
         const std::uint32_t bsdf = next_bsdf();
         bsdfs.push_back(make_bsdf(EmitterMaterial{{shaped->light->radiance}, shaped->light->two_sided}));
-        if (!add(shaped->object, bsdf)) return false;
+        if (!add(shaped->object, is_joined, bsdf)) return false;
         if (lights.emitters.size() == first || !shaped->light->power) return true;
         Emitter& emitter = lights.emitters[first];
         emitter.radiance = radiance_of_power(*shaped->light->power, emitter);
@@ -274,12 +291,14 @@ private:
     }
 
     const SceneDescription& scene_;
+    const Plan& plan_;
     Vec3d world_origin_;
     std::span<const SharedMesh> meshes_;
     MeshTree tree_; // as all of `meshes` were prepared
     ThreadPool& pool_;
     const std::stop_token& stop_;
     SharedMesh box_, rectangle_;
+    std::vector<JoinedMesh::Member> members_;
     std::set<const PreparedMesh*> seen_;
     std::set<const Mesh*> counted_;
     std::map<std::uint32_t, std::map<std::string_view, const MeshPart*>> named_parts_; // by mesh
@@ -320,7 +339,7 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     const AccelerationSettings& acceleration = settings.acceleration;
-    Preparation made(description, plan.world_origin, meshes, images, mesh_tree(acceleration), pool, stop);
+    Preparation made(description, plan, meshes, images, mesh_tree(acceleration), pool, stop);
     if (!made.run()) return nullptr;
     const auto sky = sky_light(description, plan, pool, stop, skies);
     if (plan.sky && !sky) return nullptr;
@@ -328,9 +347,10 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
         sky ? light_from(*sky, pool, made.lights) : environment_map(description, images);
     if (plan.picks_lights) made.lights.pick_by_tree();
 
-    InstanceTree tree = acceleration.levels == BvhLevels::two
-                            ? InstanceTree(std::move(made.instances), acceleration.split, pool)
-                            : InstanceTree::list(std::move(made.instances), acceleration.bounds);
+    InstanceTree tree =
+        acceleration.levels == BvhLevels::two
+            ? InstanceTree(std::move(made.instances), acceleration.split, pool, std::move(made.joined))
+            : InstanceTree::list(std::move(made.instances), acceleration.bounds, std::move(made.joined));
     made.geometry.bvh_bytes += tree.size_bytes();
     made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds(), plan.world_origin);
     made.numerics.precision = plan.precision;

@@ -305,7 +305,9 @@ TEST(MakePlan, TellsOfTwoLevelsOnlyWhereOneTreeStandsOverOthers)
     scene = one_mesh();
     scene.objects[0].world_from_object = Affine3::translate({1, 2, 3});
     EXPECT_FALSE(told(scene));
-    scene.objects.push_back(scene.objects[0]);
+    scene.objects.push_back(scene.objects[0]); // both are joined
+    EXPECT_FALSE(told(scene));
+    scene.objects.emplace_back().shape = renderer::SphereShape{};
     EXPECT_TRUE(told(scene));
 }
 
