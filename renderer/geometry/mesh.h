@@ -30,7 +30,7 @@ struct MeshMaterial {
     float shininess = 0;
     // Not yet modelled, and reported as left out.
     std::vector<std::string> textures; // names of images it uses
-    bool emits = false;
+    bool emits = false;                // by a picture
     bool is_transparent = false;
     bool is_metal = false;
     bool has_roughness = false; // a physically based one, which is less than 1
@@ -41,7 +41,7 @@ struct MeshMaterial {
     float ior = 1.5f;
     float opacity = 1;
     float cutoff = 0; // where alpha is below it there is nothing; 0: alpha makes no holes
-    Rgb emission{};   // radiance
+    Rgb emission{};   // radiance of the whole surface, W/(m^2 sr)
     bool two_sided = true;
     // Pictures, by their number in Mesh::images; each is multiplied by the value above. Alpha is the colour's,
     // or has a picture of its own; roughness is the green of its picture, metallic the blue.

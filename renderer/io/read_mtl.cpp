@@ -52,14 +52,24 @@ std::string_view texture_name(std::string_view line)
     }
 }
 
-// One number is a grey; values beyond [0, 1] would make energy.
-bool take_color(std::string_view line, Rgb& color)
+// One number is a grey.
+bool take_numbers(std::string_view line, Rgb& color)
 {
     const auto r = take_float(line);
     const std::string_view rest = trimmed(line);
     const auto g = rest.empty() ? r : take_float(line), b = rest.empty() ? r : take_float(line);
     if (!r || !g || !b || !is_finite(Vec3f{*r, *g, *b})) return false;
-    color = {std::clamp(*r, 0.0f, 1.0f), std::clamp(*g, 0.0f, 1.0f), std::clamp(*b, 0.0f, 1.0f)};
+    color = {*r, *g, *b};
+    return true;
+}
+
+// Values beyond [0, 1] would make energy.
+bool take_color(std::string_view line, Rgb& color)
+{
+    Rgb found;
+    if (!take_numbers(line, found)) return false;
+    color = {
+        std::clamp(found.r, 0.0f, 1.0f), std::clamp(found.g, 0.0f, 1.0f), std::clamp(found.b, 0.0f, 1.0f)};
     return true;
 }
 
@@ -105,11 +115,12 @@ bool take_dissolve(std::string_view line, bool& is_transparent)
     return take_below(line, 1, is_transparent);
 }
 
-bool take_emission(std::string_view line, bool& emits)
+// Light may be of any strength, but not below nothing.
+bool take_emission(std::string_view line, Rgb& emission)
 {
     Rgb light;
-    if (!take_color(line, light)) return false;
-    emits = !is_black(light);
+    if (!take_numbers(line, light)) return false;
+    emission = {std::max(light.r, 0.0f), std::max(light.g, 0.0f), std::max(light.b, 0.0f)};
     return true;
 }
 
@@ -157,7 +168,7 @@ bool MtlReader::property(std::string_view word, std::string_view rest)
     }
     if (word == "Ks") return take_color(rest, m.specular);
     if (word == "Ns") return take_shininess(rest, m.shininess);
-    if (word == "Ke") return take_emission(rest, m.emits);
+    if (word == "Ke") return take_emission(rest, m.emission);
     if (word == "d") return take_dissolve(rest, m.is_transparent);
     if (word == "Tr") return take_above(rest, 0, m.is_transparent);
     if (word == "Pm") return take_above(rest, 0, m.is_metal);
@@ -172,6 +183,7 @@ void MtlReader::map(std::string_view word, std::string_view rest)
     const std::string_view name = texture_name(rest);
     if (name.empty() || m.textures.size() == 64) return;
     m.textures.push_back(clean_utf8(name));
+    if (word == "map_Ke") m.emits = true;
     std::optional<TextureUse>* const use = word == "map_Kd"                       ? &m.color_map
                                            : word == "map_Ks"                     ? &m.specular_map
                                            : word == "map_d"                      ? &m.alpha_map
@@ -192,7 +204,10 @@ void MtlReader::map(std::string_view word, std::string_view rest)
 void MtlReader::end_material()
 {
     constexpr std::size_t kMostNames = 4;
-    if (!material_ || has_color_) return;
+    if (!material_) return;
+    // What a picture would light up in places must not shine all over.
+    if (material_->emits) material_->emission = {};
+    if (has_color_) return;
     if (material_->color_map) {
         material_->diffuse = {1, 1, 1};
         return;

@@ -34,12 +34,22 @@ bool is_transparent(const aiMaterial& from)
            from.GetTextureCount(aiTextureType_DIFFUSE) > 0;
 }
 
+// What a picture would light up in places must not shine all over: it is left out, and told.
+void take_emission(const aiMaterial& from, MeshMaterial& to)
+{
+    aiColor4D light;
+    if (from.Get(AI_MATKEY_COLOR_EMISSIVE, light) != AI_SUCCESS) return;
+    const auto strength = [](float x) { return std::isfinite(x) && x > 0 ? x : 0.0f; };
+    const Rgb emission{strength(light.r), strength(light.g), strength(light.b)};
+    if (from.GetTextureCount(aiTextureType_EMISSIVE) > 0)
+        to.emits = !is_black(emission);
+    else
+        to.emission = emission;
+}
+
 // What is not modelled, to be told.
 void take_left_out(const aiMaterial& from, MeshMaterial& to)
 {
-    aiColor4D light;
-    to.emits = from.Get(AI_MATKEY_COLOR_EMISSIVE, light) == AI_SUCCESS &&
-               (light.r > 0 || light.g > 0 || light.b > 0);
     to.is_transparent = is_transparent(from);
     to.is_metal = factor_of(from, 0, AI_MATKEY_METALLIC_FACTOR) > 0;
     to.has_roughness = factor_of(from, 1, AI_MATKEY_ROUGHNESS_FACTOR) < 1;
@@ -146,6 +156,7 @@ void read_scene_material(
     const bool has_color = has_base || from.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS;
     if (has_color) to.diffuse = unit_color(color);
     if (is_assimps_own) return; // it would be metal
+    take_emission(from, to);
     take_left_out(from, to);
     take_pictures(PictureReader(from, scene, images), to);
     if (to.color_map && !has_color) to.diffuse = {1, 1, 1};

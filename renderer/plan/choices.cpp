@@ -21,8 +21,8 @@ struct Census {
     std::size_t smooth = 0, flat_with_normals = 0, textured_meshes = 0;
     std::size_t textured = 0, normal_mapped = 0, cut_out = 0; // objects
     MaterialCensus materials;
-    std::set<std::uint32_t> shown_meshes;                            // with materials of their own
-    std::size_t emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
+    std::set<std::uint32_t> shown_meshes; // with materials of their own
+    std::size_t shining = 0, emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
     std::size_t point = 0, spot = 0, directional = 0, sun = 0, area = 0;
     bool sky = false, sky_picture = false, sky_air = false;
 };
@@ -65,6 +65,7 @@ void count_object(Census& c,
     if (facts->normal_mapped > 0) ++c.normal_mapped;
     if (facts->cutouts > 0) ++c.cut_out;
     if (c.shown_meshes.insert(std::get<MeshShape>(object.shape).mesh).second) {
+        c.shining += facts->shining_materials;
         c.emissive += facts->emissive_materials;
         c.transparent += facts->transparent_materials;
         c.metal += facts->metal_materials;
@@ -231,6 +232,9 @@ private:
                                            : "no mesh has vertex normals");
         explain_materials(c_.materials, out_);
         textures();
+        use_if(c_.shining,
+               "mesh_emission",
+               of(c_.shining, "material") + " of meshes that shine: their triangles are lights");
         left_out_of_meshes();
     }
 
@@ -256,7 +260,8 @@ private:
                 "their plain colours are used");
         skip_if(c_.emissive,
                 "emission",
-                of(c_.emissive, "material") + " of meshes would shine: surfaces give no light, lights do");
+                of(c_.emissive, "material") +
+                    " of meshes would shine as a picture says: only whole surfaces of one colour do");
         skip_if(c_.transparent,
                 "transparency",
                 of(c_.transparent, "material") + " of meshes would let light through: all are opaque");

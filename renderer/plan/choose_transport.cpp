@@ -60,7 +60,9 @@ private:
         if (mesh != nullptr) ++kinds_.not_convex;
         if (!object.material) {
             ++kinds_.physical; // the default, or a mesh's own
-            if (mesh != nullptr && meshes_[mesh->mesh].physical_materials != 0) ++kinds_.sharp;
+            if (mesh == nullptr) return;
+            if (meshes_[mesh->mesh].physical_materials != 0) ++kinds_.sharp;
+            kinds_.emitters += meshes_[mesh->mesh].shining_triangles;
             return;
         }
         const Material& material = scene_.materials[*object.material].material;

@@ -23,6 +23,18 @@ std::vector<bool> used_materials(const Mesh& mesh)
     return used;
 }
 
+std::uint64_t shining_triangles(const Mesh& mesh)
+{
+    const auto shines = [&](std::size_t material) {
+        return material < mesh.materials.size() && !is_black(mesh.materials[material].emission);
+    };
+    if (mesh.triangle_materials.empty()) return shines(0) ? mesh.triangles.size() : 0;
+    std::uint64_t count = 0;
+    for (const std::uint16_t material : mesh.triangle_materials)
+        count += shines(material);
+    return count;
+}
+
 } // namespace
 
 MeshFacts facts_of(const Mesh& mesh)
@@ -49,9 +61,11 @@ MeshFacts facts_of(const Mesh& mesh)
         facts.metal_materials += material.is_metal && !material.is_physical;
         facts.rough_materials += material.has_roughness && !material.is_physical;
         facts.physical_materials += material.is_physical;
+        facts.shining_materials += !is_black(material.emission);
         facts.cutouts += material.cutoff > 0;
         facts.normal_mapped += material.normal_map.has_value();
     }
+    facts.shining_triangles = shining_triangles(mesh);
     facts.has_uvs = !mesh.uvs.empty();
     facts.images = static_cast<std::uint32_t>(mesh.images.size());
     for (const MeshImage& named : mesh.images)

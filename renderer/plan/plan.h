@@ -48,6 +48,8 @@ struct MeshFacts {
     // Materials that some triangle has, by what of theirs is not modelled.
     std::uint32_t emissive_materials = 0, transparent_materials = 0, metal_materials = 0, rough_materials = 0;
     std::uint32_t physical_materials = 0;   // glTF's, shaded as Cook-Torrance
+    std::uint32_t shining_materials = 0;    // of the mesh's own that some triangle has
+    std::uint64_t shining_triangles = 0;    // that have one of those
     std::map<std::string, PartFacts> parts; // by name; of several of one name, the first
 };
 MeshFacts facts_of(const Mesh& mesh);

@@ -51,7 +51,8 @@ TexturedMaterial from_mesh(const MeshMaterial& m)
             .normal_map = m.normal_map,
             .alpha_map = m.alpha_map,
             .opacity = m.opacity,
-            .cutoff = m.cutoff};
+            .cutoff = m.cutoff,
+            .emission = m.emission};
 }
 
 } // namespace renderer

@@ -101,6 +101,7 @@ private:
     void add_material(const TexturedMaterial& material, std::span<const SharedImage> images)
     {
         bsdfs.push_back(make_bsdf(textures.add(next_bsdf(), material, images)));
+        bsdfs.back().emission += material.emission;
     }
 
     std::uint32_t next_bsdf() const { return static_cast<std::uint32_t>(bsdfs.size()); }

@@ -134,7 +134,9 @@ Bsdf SurfaceTextures::bsdf_at(const TexturedMaterial& textured,
                           (textured.values_are_factors ? value.value : 1);
         }
     });
-    return make_bsdf(material);
+    Bsdf bsdf = make_bsdf(material);
+    bsdf.emission += textured.emission;
+    return bsdf;
 }
 
 Vec3d SurfaceTextures::tilt_at(const TextureUse& use,

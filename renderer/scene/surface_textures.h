@@ -34,6 +34,7 @@ struct TexturedMaterial {
     std::optional<TextureUse> normal_map{};
     std::optional<TextureUse> alpha_map{};
     float opacity = 1, cutoff = 0; // no hole where alpha times opacity is at least the cut-off
+    Rgb emission{};                // radiance beside what the material gives
 };
 
 class SurfaceTextures {

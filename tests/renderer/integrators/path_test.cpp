@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <span>
+#include <variant>
 #include <vector>
 
 using namespace renderer;
@@ -159,6 +162,20 @@ TEST(Path, MeasuresARectangleOfLight)
 
 namespace {
 
+// A knot of which every third triangle shines.
+Mesh own_lamp(Rgb reflected)
+{
+    Mesh mesh = tests::knot(24, 6);
+    mesh.materials.resize(2);
+    mesh.materials[0].diffuse = mesh.materials[1].diffuse = reflected;
+    mesh.materials[1].emission = {9, 8, 7};
+    std::vector<std::uint16_t> materials(mesh.triangles.size());
+    for (std::size_t i = 0; i < materials.size(); i += 3)
+        materials[i] = 1;
+    mesh.triangle_materials.append(std::span<const std::uint16_t>(materials));
+    return mesh;
+}
+
 // Scenes where lights and the material's own rays can both find what shines.
 std::vector<TestScene> scenes_with_extended_lights()
 {
@@ -239,6 +256,10 @@ std::vector<TestScene> scenes_with_extended_lights()
         knot.material = 2;
         knot.world_from_object = Affine3::translate({-1.2, 1, 0.4}) * Affine3::scale({0.2, 0.2, 0.2});
         scenes.push_back(test);
+        // A third of its triangles shine by the mesh's own material, and reflect as the others do.
+        test.meshes[0] = own_lamp({0.5f, 0.5f, 0.5f});
+        test.description.objects.back().material.reset();
+        scenes.push_back(test);
     }
     return scenes;
 }
@@ -299,6 +320,23 @@ TEST(Path, FindsTheSameLightByAskingLightsByTheMaterialsRaysAndByBoth)
         EXPECT_LT(both.second, 0.02 * both.first) << number;
         ++number;
     }
+}
+
+TEST(Path, TakesAMeshThatShinesByItsOwnMaterialForTheSameAsAnEmitter)
+{
+    TestScene test = scenes_with_extended_lights().back();
+    Mesh whole = tests::knot(24, 6);
+    whole.materials.resize(1);
+    whole.materials[0].diffuse = {0, 0, 0};
+    whole.materials[0].emission = {3, 3, 3};
+    test.meshes[0] = whole;
+    test.settings.quality.samples = 16;
+    TestScene emitter = test;
+    emitter.description.objects.back().material = 2;
+    std::get<EmitterMaterial>(emitter.description.materials[2].material).two_sided = true;
+    const auto own = tests::mean_of(render_description(test).film.mean());
+    EXPECT_GT(own.g, 0.01f);
+    EXPECT_EQ(own, tests::mean_of(render_description(emitter).film.mean()));
 }
 
 TEST(Path, IsTakenToALoneBodyThatReflectsASingleWayOrLetsLightIn)

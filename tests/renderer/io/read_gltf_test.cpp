@@ -128,12 +128,24 @@ TEST(ReadGltf, KeepsWhatItsMaterialsHaveThatIsNotModelled)
     EXPECT_EQ(with(plain), "");
     EXPECT_EQ(with(""), "m") << "the format's default is metal";
     EXPECT_EQ(with(R"("metallicFactor":0.5,"roughnessFactor":0.2)"), "mr");
-    EXPECT_EQ(with(plain, R"(,"emissiveFactor":[0,0,0.1])"), "e");
+    EXPECT_EQ(with(plain, R"(,"emissiveFactor":[0,0,0.1])"), "") << "it shines";
     const std::string thin = plain + R"(,"baseColorFactor":[1,1,1,0.4])";
     EXPECT_EQ(with(thin, R"(,"alphaMode":"BLEND")"), "t");
     EXPECT_EQ(with(thin, R"(,"alphaMode":"MASK")"), "t");
     EXPECT_EQ(with(thin), "") << "alphaMode OPAQUE ignores alpha";
     EXPECT_EQ(with(plain, R"(,"alphaMode":"BLEND")"), "") << "nothing of it is transparent";
+}
+
+TEST(ReadGltf, TakesTheEmissionOfItsMaterials)
+{
+    const auto emission = [](const std::string& material) {
+        const auto result = import_text(
+            "t.gltf", triangle_gltf("", R"(,"material":0)", R"(,"materials":[{)" + material + "}]"));
+        EXPECT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
+        return std::get<ImportedMesh>(result).mesh.materials.at(0).emission;
+    };
+    EXPECT_EQ(emission(R"("name":"b")"), renderer::Rgb{});
+    EXPECT_EQ(emission(R"("name":"b","emissiveFactor":[1,0.5,0.25])"), (renderer::Rgb{1, 0.5f, 0.25f}));
 }
 
 TEST(GltfOutline, RefusesNodesThatAreNoTrees)

@@ -224,10 +224,28 @@ TEST(ReadObj, KeepsWhatItsMaterialsHaveThatIsNotModelled)
                (m.has_roughness ? "r" : "");
     };
     EXPECT_EQ(traits(0), "");
-    EXPECT_EQ(traits(1), "e");
+    EXPECT_EQ(traits(1), "") << "it shines";
     EXPECT_EQ(traits(2), "t");
     EXPECT_EQ(traits(3), "t");
     EXPECT_EQ(traits(4), "mr");
+}
+
+TEST(ReadObj, TakesEmissionOfAnyStrengthButNotByAPicture)
+{
+    const Files files{{"a.mtl",
+                       "newmtl dark\nKd 1 1 1\nKe 0 0 0\n"
+                       "newmtl lamp\nKd 1 1 1\nKe 8 8.5 -7\n"
+                       "newmtl windows\nKd 1 1 1\nKe 1 1 1\nmap_Ke lit.png\n"
+                       "newmtl last\nmap_Ke lit.png\nKe 2\n"}};
+    const auto materials = mesh_of("mtllib a.mtl\n" + kSquare + "f 1 2 3\n", files).mesh.materials;
+    ASSERT_GE(materials.size(), 4u); // and one of faces without a name
+    EXPECT_EQ(materials[0].emission, renderer::Rgb{});
+    EXPECT_EQ(materials[1].emission, (renderer::Rgb{8, 8.5f, 0}));
+    for (const std::size_t by_picture : {std::size_t{2}, std::size_t{3}}) {
+        EXPECT_EQ(materials[by_picture].emission, renderer::Rgb{}) << by_picture;
+        EXPECT_TRUE(materials[by_picture].emits) << by_picture;
+    }
+    EXPECT_FALSE(materials[0].emits || materials[1].emits);
 }
 
 TEST(ReadObj, SaysWhenItsMtlIsMissing)

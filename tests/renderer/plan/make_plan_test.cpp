@@ -397,7 +397,35 @@ TEST(FactsOf, CountsOnlyMaterialsThatATriangleHas)
     mesh.triangle_materials = {2, 0};
     const MeshFacts facts = renderer::facts_of(mesh);
     EXPECT_EQ(facts.emissive_materials, 2u);
+    EXPECT_EQ(facts.shining_materials, 0u);
     EXPECT_EQ(facts.transparent_materials, 2u);
     EXPECT_EQ(facts.metal_materials, 2u);
     EXPECT_EQ(facts.rough_materials, 2u);
+}
+
+TEST(MakePlan, CountsTrianglesThatShineAsLights)
+{
+    renderer::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 1, 2}, {0, 1, 2}};
+    mesh.materials.resize(2);
+    mesh.materials[1].emission = {1, 2, 3};
+    EXPECT_EQ(renderer::facts_of(mesh).shining_triangles, 0u); // none given: all have the first
+    mesh.triangle_materials = {1, 0, 1};
+    const MeshFacts facts = renderer::facts_of(mesh);
+    EXPECT_EQ(facts.shining_triangles, 2u);
+    EXPECT_EQ(facts.shining_materials, 1u);
+
+    SceneDescription scene = one_mesh();
+    const auto shines = [&] {
+        const Plan plan = plan_of(scene, {facts});
+        return std::any_of(plan.models.used.begin(), plan.models.used.end(), [](const ModelChoice& choice) {
+            return choice.name == "mesh_emission";
+        });
+    };
+    EXPECT_TRUE(shines());
+    EXPECT_EQ(plan_of(scene, {facts}).integrator, renderer::Integrator::path);
+    scene.materials.push_back({"own", renderer::DiffuseMaterial{}});
+    scene.objects[0].material = 0;
+    EXPECT_FALSE(shines()) << "the mesh's own materials are not shown";
 }
