@@ -102,11 +102,30 @@ private:
                               marker != kReserved && marker != kArithmetic;
         if (is_frame)
             if (auto bad = frame(marker, length)) return bad;
+        if (marker == kHuffman)
+            if (auto bad = huffman_tables(length)) return bad;
         if (marker == kScan && ++scans_ > kMostScans)
             return ImportFault{"over_limit",
                                "the JPEG has more than " + std::to_string(kMostScans) +
                                    " scans: save it as a baseline JPEG"};
         at_ += length;
+        return std::nullopt;
+    }
+
+    // stb has room for 256 codes a table and writes as many as a file says.
+    std::optional<ImportFault> huffman_tables(std::size_t length) const
+    {
+        constexpr std::size_t kHead = 17, kMostCodes = 256; // which table, and how many codes of each length
+        for (std::size_t at = at_ + 2, end = at_ + length; at < end;) {
+            std::size_t codes = 0;
+            for (std::size_t i = 1; i < kHead && at + i < end; ++i)
+                codes += byte(at + i);
+            if (end - at < kHead || codes > kMostCodes || codes > end - at - kHead)
+                return ImportFault{"malformed",
+                                   "byte " + std::to_string(at) +
+                                       ": the JPEG has a Huffman table of more codes than there are"};
+            at += kHead + codes;
+        }
         return std::nullopt;
     }
 

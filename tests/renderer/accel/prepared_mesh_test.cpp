@@ -79,7 +79,7 @@ TEST(PreparedMesh, ComesBackFromItsBytesAsItWas)
     TreeBytes copy{bytes.head, {}};
     for (const auto array : bytes.arrays) {
         std::vector<Line>& lines = keeper->emplace_back(array.size() / sizeof(Line) + 1);
-        std::memcpy(lines.data(), array.data(), array.size());
+        if (!array.empty()) std::memcpy(lines.data(), array.data(), array.size());
         copy.arrays.push_back(std::as_bytes(std::span(lines)).first(array.size()));
     }
     const auto second = prepared_from(mesh, copy, keeper);

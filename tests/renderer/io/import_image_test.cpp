@@ -119,6 +119,26 @@ TEST(ImportImage, ReadsJpeg)
         EXPECT_EQ(code_at(grey, i), 128) << i;
 }
 
+TEST(ImportImage, RefusesAJpegWhoseHuffmanTableHasMoreCodesThanThereAre)
+{
+    const std::string whole = asset("rgb.jpg");
+    const std::size_t table = whole.find("\xff\xc4");
+    ASSERT_NE(table, std::string::npos);
+    for (const std::size_t of_length : {0u, 7u, 15u}) {
+        std::string bytes = whole;
+        bytes[table + 5 + of_length] = '\xff';
+        EXPECT_EQ(code_of(read("rgb.jpg", bytes)), "malformed") << of_length;
+    }
+    // A table as long as it says, with 300 codes.
+    std::string counts(16, '\0');
+    counts[14] = '\xff';
+    counts[15] = 45;
+    const std::size_t length = 2 + 17 + 300;
+    const std::string segment = std::string("\xff\xc4") + static_cast<char>(length >> 8) +
+                                static_cast<char>(length & 0xff) + '\0' + counts + std::string(300, '\1');
+    EXPECT_EQ(code_of(read("rgb.jpg", whole.substr(0, table) + segment + whole.substr(table))), "malformed");
+}
+
 TEST(ImportImage, ReadsTgaOfEitherKind)
 {
     expect_pattern("rgb.tga", 3);
