@@ -27,6 +27,7 @@ ExitCode check_command(const CheckOptions& options)
     }
     api::JobRequest expanded = job.request;
     expanded.scene = job.assumed.description;
+    expanded.settings.image.exposure_ev = plan_of(job).exposure_ev;
     const std::string text = api::write_job(expanded);
     std::fwrite(text.data(), 1, text.size(), stdout);
     if (!text.ends_with('\n')) std::fputc('\n', stdout);

@@ -2,7 +2,7 @@
 // ray need not be taken to each of them.
 //
 // Frame      the traced frame. A corner is where its instance's transform puts it in double, kept as a float and a
-//            residual: 2^-49 of its largest coordinate, less than a ray may be off by that is taken to an instance.
+//            residual: within 2^-49 of its largest coordinate.
 // Ties       its triangles stand in the order of (instance, primitive), so the least primitive is the least of these.
 // Promise    triangles that share a vertex of one instance share it here: no ray slips through between them.
 // Threads    immutable.

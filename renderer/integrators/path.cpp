@@ -24,7 +24,7 @@ struct Path {
     std::uint32_t depth = 0; // scatterings so far
     double pdf = 0; // of its last direction; 0: no light was sampled there, what it finds counts in full
     Vec3d from{};   // the last scattering
-    bool has_air = false;     // what lies before it is counted
+    bool is_first = true;     // the camera's own ray
     bool is_indirect = false; // it has been scattered by more than mirrors and panes
     Media media{};
 };
@@ -106,7 +106,8 @@ private:
         // What is seen after a bounce is not filtered: scattering has spread it over the samples.
         const double width = path.depth == 0 ? scene_.camera().width_at(hit.t) : 0;
         turn.surface = scene_.surface_at(hit, toward_viewer, &turn.room, width);
-        if (path.depth == 0 && scene_.sky() != nullptr) add_air(path, hit.t);
+        if (path.is_first && scene_.sky() != nullptr) add_air(path, hit.t);
+        path.is_first = false;
         if (path.media.here() != nullptr) path.weight = path.weight * transmittance(path.media, hit.t);
         const Bsdf& bsdf = *turn.surface.bsdf;
         if (!is_black(bsdf.emission)) {
@@ -124,12 +125,9 @@ private:
 
     void add_air(Path& path, double distance)
     {
-        if (path.has_air) return; // a pane that is no boundary was passed
-        Rgb added;
-        const Rgb left = behind_air(scene_, path.ray, distance, added);
-        add(path, added);
-        path.weight = path.weight * left;
-        path.has_air = true;
+        const SkyLight::Between air = air_before(scene_, path.ray, distance);
+        add(path, air.added);
+        path.weight = path.weight * air.transmittance;
     }
 
     double share_of_emission(const Path& path, const SceneHit& hit) const

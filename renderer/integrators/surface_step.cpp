@@ -41,14 +41,11 @@ Rgb transmittance(const Media& media, double way)
     return {left(here->absorption.r), left(here->absorption.g), left(here->absorption.b)};
 }
 
-Rgb behind_air(const Scene& scene, const Ray& ray, double distance, Rgb& added)
+SkyLight::Between air_before(const Scene& scene, const Ray& ray, double distance)
 {
-    added = {};
     const SkyLight* const sky = scene.sky();
-    if (sky == nullptr || !sky->has_air_before()) return {1, 1, 1};
-    const SkyLight::Between air = sky->air_before(ray.direction, distance);
-    added = air.added;
-    return air.transmittance;
+    if (sky == nullptr || !sky->has_air_before()) return {};
+    return sky->air_before(ray.direction, distance);
 }
 
 Vec3d reflected(const Surface& surface, Vec3d direction)

@@ -13,8 +13,8 @@ Rgb background(const Scene& scene, Vec3d direction, double drawn_pdf);
 // What is left of light after `way` metres of what fills the place.
 Rgb transmittance(const Media& media, double way);
 
-// What a camera ray's air leaves of what it sees at `distance`, and adds to it; nothing where air does not count.
-Rgb behind_air(const Scene& scene, const Ray& ray, double distance, Rgb& added);
+// What the air before a camera ray's hit at `distance` leaves of it, and adds: all and nothing where air does not count.
+SkyLight::Between air_before(const Scene& scene, const Ray& ray, double distance);
 
 // Unit direction in which a mirror or the smooth boundary of glass sends a ray on; in double, since errors of a
 // direction grow over a path. `eta` as in Bsdf; nothing sensible where all light is reflected.

@@ -94,10 +94,9 @@ private:
         const double width = branch.depth == 0 ? scene_.camera().width_at(hit.t) : 0;
         Surface& surface = surfaces_[i] = scene_.surface_at(hit, toward_viewer, &rooms_[i], width);
         if (branch.is_first && scene_.sky() != nullptr) {
-            Rgb added;
-            const Rgb left = behind_air(scene_, branch.ray, hit.t, added);
-            radiance_[branch.sample] += branch.weight * added;
-            branch.weight = branch.weight * left;
+            const SkyLight::Between air = air_before(scene_, branch.ray, hit.t);
+            radiance_[branch.sample] += branch.weight * air.added;
+            branch.weight = branch.weight * air.transmittance;
         }
         branch.is_first = false;
         if (branch.media.here() != nullptr)

@@ -121,10 +121,10 @@ public:
         out_.skipped.insert(out_.skipped.end(), transport_.skipped.begin(), transport_.skipped.end());
         geometry();
         trees();
-        const bool is_lit = transport_.integrator != Integrator::normals &&
-                            transport_.integrator != Integrator::ambient_occlusion;
-        if (is_lit) shading();
-        if (is_lit) lights();
+        if (is_lit(transport_.integrator)) {
+            shading();
+            lights();
+        }
         return std::move(out_);
     }
 

@@ -2,13 +2,14 @@
 
 #include "renderer/color/strongest.h"
 #include "renderer/math/transcendental.h"
+#include "renderer/plan/light_shapes.h"
+#include "renderer/plan/number_in_words.h"
 #include "renderer/plan/world_bounds.h"
 #include "renderer/sky/air.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <variant>
 
@@ -24,13 +25,6 @@ const AtmosphereDescription* atmosphere_of(const SceneDescription& scene)
     return scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr;
 }
 
-std::string number(double x)
-{
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g", x);
-    return text.data();
-}
-
 // How far things are seen, and how low air lies before them.
 struct Depth {
     double far_m = 0, lowest_m = 0;
@@ -40,34 +34,41 @@ Depth depth_of(const SceneDescription& scene, std::span<const MeshFacts> meshes)
 {
     const Vec3d eye = scene.camera->position;
     Depth depth{0, eye.y};
-    for (const ObjectDescription& object : scene.objects) {
-        if (object_bounds(object.shape, meshes).empty()) continue;
+    const auto look_at = [&](const ObjectDescription& object) {
+        if (object_bounds(object.shape, meshes).empty()) return;
         for (const Vec3d& corner : world_corners(object, meshes)) {
             depth.far_m = std::max(depth.far_m, length(corner - eye));
             depth.lowest_m = std::min(depth.lowest_m, corner.y);
         }
-    }
+    };
+    for (const ObjectDescription& object : scene.objects)
+        look_at(object);
+    for (const Light& light : scene.lights)
+        if (const std::optional<LightShape> shaped = shape_of(light)) look_at(shaped->object);
     return depth;
 }
 
-// Extinction per metre at the wavelength nearest to 550 nm, at an altitude.
-double extinction(const Air& air, double altitude)
+// Extinction per metre at the wavelength nearest to 550 nm, at most, from an altitude upwards.
+double most_extinction(const Air& air, double altitude)
 {
     const auto nearest =
         std::min_element(air.wavelength_nm.begin(), air.wavelength_nm.end(), [](double a, double b) {
             return std::abs(a - 550) < std::abs(b - 550);
         });
-    return air.optical_depth(static_cast<std::size_t>(nearest - air.wavelength_nm.begin()),
-                             air.density(std::max(0.0, altitude)));
+    Columns density = air.density(std::max(0.0, altitude));
+    density.ozone = 1; // its peak may lie above
+    return air.optical_depth(static_cast<std::size_t>(nearest - air.wavelength_nm.begin()), density);
 }
 
 } // namespace
 
-std::optional<SkyPlan>
-choose_sky(const SceneDescription& scene, std::span<const MeshFacts> meshes, ModelReport& models)
+std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
+                                  std::span<const MeshFacts> meshes,
+                                  Integrator integrator,
+                                  ModelReport& models)
 {
     const AtmosphereDescription* const a = atmosphere_of(scene);
-    if (a == nullptr) return std::nullopt;
+    if (a == nullptr || !is_lit(integrator)) return std::nullopt;
     SkyPlan plan;
     plan.mode = a->mode == SkyMode::automatic ? SkyMode::fast : a->mode;
     models.used.push_back(
@@ -85,13 +86,15 @@ choose_sky(const SceneDescription& scene, std::span<const MeshFacts> meshes, Mod
                                   "of a clear sky's irradiance, nearly all of twilight"});
 
     const Depth depth = depth_of(scene, meshes);
-    const double bound = 1 - exp(-extinction(make_air(*a), a->altitude_m + depth.lowest_m) * depth.far_m);
-    const std::string seen = number(depth.far_m) + " m away at most: the air before it takes " +
-                             number(100 * bound) + " % at 550 nm at most";
+    const double bound =
+        1 - exp(-most_extinction(make_air(*a), a->altitude_m + depth.lowest_m) * depth.far_m);
+    const std::string seen = number_in_words(depth.far_m) + " m away at most: the air before it takes " +
+                             number_in_words(100 * bound) + " % at 550 nm at most";
     if (!a->aerial_perspective)
         models.skipped.push_back({"aerial_perspective", "the scene asks for none; things are " + seen});
     else if (!(bound >= kMostLeftOut))
-        models.skipped.push_back({"aerial_perspective", "bound " + number(bound) + ": things are " + seen});
+        models.skipped.push_back(
+            {"aerial_perspective", "bound " + number_in_words(bound) + ": things are " + seen});
     else {
         plan.far_m = depth.far_m;
         models.used.push_back(
@@ -100,11 +103,14 @@ choose_sky(const SceneDescription& scene, std::span<const MeshFacts> meshes, Mod
     return plan;
 }
 
-double choose_exposure(const ImageSettings& image, const SceneDescription& scene, ModelReport& models)
+double choose_exposure(const ImageSettings& image,
+                       const SceneDescription& scene,
+                       Integrator integrator,
+                       ModelReport& models)
 {
     if (image.exposure_ev) return *image.exposure_ev;
     const AtmosphereDescription* const a = atmosphere_of(scene);
-    if (a == nullptr || !(strongest(a->sun.irradiance) > 0)) return 0;
+    if (a == nullptr || !is_lit(integrator) || !(strongest(a->sun.irradiance) > 0)) return 0;
     // Day, sunset, twilight, night: about what keeps white things and the sky near the sun within a picture's range.
     struct Stop {
         double elevation_deg, ev;
@@ -125,9 +131,9 @@ double choose_exposure(const ImageSettings& image, const SceneDescription& scene
     if (a->altitude_m + scene.camera->position.y > air.height_m) ev = kStops.back().ev;
     constexpr double kUsualIrradiance = 1.5;
     ev += log2(kUsualIrradiance / static_cast<double>(strongest(a->sun.irradiance)));
-    models.used.push_back(
-        {"assumed_exposure",
-         "no `exposure_ev` is given: " + number(ev) + " EV, for the sun's elevation and irradiance"});
+    models.used.push_back({"assumed_exposure",
+                           "no `exposure_ev` is given: " + number_in_words(ev) +
+                               " EV, for the sun's elevation and irradiance"});
     return ev;
 }
 

@@ -10,11 +10,16 @@
 
 namespace renderer {
 
-// Nothing where the environment is no atmosphere. Its reasons go to `models`.
-std::optional<SkyPlan>
-choose_sky(const SceneDescription& scene, std::span<const MeshFacts> meshes, ModelReport& models);
+// Nothing where the environment is no atmosphere, or no light is looked at. Its reasons go to `models`.
+std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
+                                  std::span<const MeshFacts> meshes,
+                                  Integrator integrator,
+                                  ModelReport& models);
 
-// What the user says; else 0, or under an atmosphere what its sun's elevation and irradiance ask for.
-double choose_exposure(const ImageSettings& image, const SceneDescription& scene, ModelReport& models);
+// What the user says; else 0, or for light under an atmosphere what its sun's elevation and irradiance ask for.
+double choose_exposure(const ImageSettings& image,
+                       const SceneDescription& scene,
+                       Integrator integrator,
+                       ModelReport& models);
 
 } // namespace renderer

@@ -2,6 +2,7 @@
 
 #include "renderer/geometry/rounding.h"
 #include "renderer/math/transcendental.h"
+#include "renderer/plan/number_in_words.h"
 #include "renderer/plan/placement.h"
 #include "renderer/plan/world_frame.h"
 
@@ -15,13 +16,6 @@
 namespace renderer {
 
 namespace {
-
-std::string number(double x)
-{
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, 4);
-    return {text.data(), end.ptr};
-}
 
 std::string place(Vec3d p)
 {
@@ -120,8 +114,9 @@ void explain_numerics(const SceneDescription& scene,
     std::string why = meshes_in_words(floats) +
                       " without triangles below 2^-20 of their coordinates, or whose file has floats";
     if (found.worst.excess() > 1)
-        why += "; where nearest to the camera a corner may be off by " + number(found.worst.moves_m) +
-               " m, an eighth of a pixel is " + number(found.worst.eighth_of_a_pixel_m) + " m";
+        why += "; where nearest to the camera a corner may be off by " +
+               number_in_words(found.worst.moves_m) + " m, an eighth of a pixel is " +
+               number_in_words(found.worst.eighth_of_a_pixel_m) + " m";
     models.used.push_back({"float_corners", std::move(why)});
 }
 

@@ -40,8 +40,8 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     plan.precision = corner_precision(description, meshes);
     plan.prediction = predict_cost(description, settings, budget, transport);
     plan.models = explain(scene, meshes, settings, budget, plan.joined, std::move(transport));
-    plan.sky = choose_sky(description, meshes, plan.models);
-    plan.exposure_ev = choose_exposure(settings.image, description, plan.models);
+    plan.sky = choose_sky(description, meshes, plan.integrator, plan.models);
+    plan.exposure_ev = choose_exposure(settings.image, description, plan.integrator, plan.models);
     explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);
     return plan;
 }

@@ -75,6 +75,12 @@ AssumedScene assume_defaults(SceneDescription description, std::span<const MeshF
 // path of one scattering.
 enum class Integrator : std::uint8_t { direct, whitted, path, ambient_occlusion, normals };
 
+// The others look at shapes alone.
+constexpr bool is_lit(Integrator integrator)
+{
+    return integrator != Integrator::ambient_occlusion && integrator != Integrator::normals;
+}
+
 // Of an atmosphere: which tables, and how far things are seen through air that counts (0: it does not).
 struct SkyPlan {
     SkyMode mode = SkyMode::fast; // never automatic

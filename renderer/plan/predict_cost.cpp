@@ -12,6 +12,16 @@ constexpr double kSecondsARay = 0.7e-6;
 // Scatterings of a path that roulette ends, at albedos about one half.
 constexpr double kUsualScatterings = 3;
 
+// Of a core, what an atmosphere's tables take where light is scattered more than once: see sky/sky.h.
+double table_seconds(const SceneDescription& scene, const TransportChoice& transport)
+{
+    const auto* const air =
+        scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr;
+    if (air == nullptr || air->scattering == SkyScattering::single || !is_lit(transport.integrator)) return 0;
+    const auto groups = static_cast<double>((air->wavelengths_nm.size() + 3) / 4);
+    return groups * (air->mode == SkyMode::exact ? 11 : 1.5);
+}
+
 double rays_a_sample(const SceneDescription& scene, const TransportChoice& transport)
 {
     const bool sky = scene.environment && !std::holds_alternative<NoEnvironment>(*scene.environment);
@@ -50,6 +60,7 @@ Prediction predict_cost(const SceneDescription& scene,
     p.threads = asked != 0 ? asked : std::max(1u, std::thread::hardware_concurrency());
     p.seconds = p.rays * kSecondsARay / p.threads;
     if (quality.time_s && !quality.samples) p.seconds = std::min(p.seconds, *quality.time_s);
+    p.seconds += table_seconds(scene, transport) / p.threads;
     return p;
 }
 

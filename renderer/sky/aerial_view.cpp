@@ -6,7 +6,7 @@
 #include "renderer/sky/light_path.h"
 #include "renderer/sky/optical_depth.h"
 #include "renderer/sky/phase.h"
-#include "renderer/sky/sky_sun.h"
+#include "renderer/sky/sunlit_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,23 +61,12 @@ void AerialView::fill(std::size_t row, const ScatteredLight* scattered)
         LightPath path =
             scattered ? scattered->path(ray, far) : light_path(air_, nullptr, ray, kPoints, {}, far);
         path.hits_ground = false; // what stands there is seen instead
-        const std::size_t n = path.places.size();
         for (std::size_t a = 0; a < size_.azimuths; ++a) {
             const double cosine =
                 sin_cos_deg(180 * static_cast<double>(a) / static_cast<double>(size_.azimuths - 1)).second;
             const double nu = std::clamp(mu * mu_sun_ + sine * sun_sine_ * cosine, -1.0, 1.0);
             Lanes* const out = &light_[(entry * size_.azimuths + a) * groups_ * kParts];
-            for (std::size_t i = 0; i < n; ++i) {
-                const LightPath::Place& place = path.places[i];
-                const double mu_sun = (path.start_radius * mu_sun_ + place.along * nu) * place.inverse_radius;
-                const SunThroughAir sun(air_, columns_, place.altitude, std::clamp(mu_sun, -1.0, 1.0));
-                if (sun.hidden()) continue;
-                for (std::size_t g = 0; g < groups_; ++g) {
-                    const Lanes reaching = sun.transmittance(air_, g);
-                    out[g * kParts] += path.rayleigh[g * n + i] * reaching;
-                    out[g * kParts + 1] += path.mie[g * n + i] * reaching;
-                }
-            }
+            add_sunlight(air_, columns_, path, mu_sun_, nu, out, kParts);
             if (!scattered) continue;
             const Spectrum more = scattered->radiance(path, mu_sun_, nu);
             for (std::size_t w = 0; w < air_.wavelengths; ++w)

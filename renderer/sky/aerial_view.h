@@ -5,7 +5,7 @@
 //
 // Units   metres; what is added is L / E0, 1/sr.
 // Errors  against quadrature: sky_light_test.cpp.
-// Cost    building: 0.3 s of a core; a look-up 150 ns.
+// Cost    building: 0.15 s of a core; a look-up 150 ns.
 // Threads the same bits however many build it; const: any number at once.
 #pragma once
 

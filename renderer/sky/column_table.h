@@ -21,6 +21,7 @@ public:
 
     // Of a point that sees the sky at that angle: mu is cut to the horizon.
     [[nodiscard]] Columns at(double altitude, double mu) const;
+    [[nodiscard]] std::size_t size_bytes() const { return columns_.capacity() * sizeof(Columns); }
 
 private:
     static constexpr std::size_t kRows = 64, kPlaces = 128;

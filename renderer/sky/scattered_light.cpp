@@ -263,6 +263,15 @@ Lanes ScatteredLight::gather(
                      mix(source.ground[at_sun.below], source.ground[at_sun.below + 1], at_sun.share);
 }
 
+std::size_t ScatteredLight::size_bytes() const
+{
+    std::size_t bytes = 0;
+    for (const Source& source : total_)
+        bytes += source.moments.capacity() * sizeof(Moments) +
+                 (source.mie.capacity() + source.ground.capacity()) * sizeof(Lanes);
+    return bytes;
+}
+
 LightPath ScatteredLight::path(const PlanetRay& ray, double far_m) const
 {
     return light_path(air_, &grid_, ray, std::isfinite(far_m) ? kPointsOfPart : kPointsFromEye, {}, far_m);

@@ -46,6 +46,7 @@ public:
 
     // Orders that were summed one by one; those beyond follow as a geometric series.
     [[nodiscard]] std::size_t orders() const { return orders_; }
+    [[nodiscard]] std::size_t size_bytes() const;
 
 private:
     // What the places send out, of one group of wavelengths.

@@ -35,6 +35,11 @@ public:
     [[nodiscard]] const ColumnTable& columns() const { return *columns_; }
     [[nodiscard]] const ScatteredLight* scattered() const { return scattered_.get(); } // null: single
 
+    [[nodiscard]] std::size_t size_bytes() const // of its tables
+    {
+        return columns_->size_bytes() + (scattered_ ? scattered_->size_bytes() : 0);
+    }
+
     // The sun's disk is not in it.
     [[nodiscard]] SkyRadiance radiance(const SkyGeometry& geometry) const;
     [[nodiscard]] SkyRadiance radiance(const PlanetRay& ray, const SkyGeometry& geometry) const;

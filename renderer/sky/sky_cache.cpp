@@ -39,7 +39,15 @@ SkyCache::get(const AtmosphereDescription& description, ThreadPool& pool, const 
     const std::lock_guard lock(mutex_);
     if (auto sky = find(air)) return sky;
     kept_.emplace_back(air, made);
-    if (kept_.size() > most_) kept_.erase(kept_.begin());
+    std::size_t bytes = 0;
+    for (const Entry& entry : kept_)
+        bytes += entry.second->size_bytes();
+    while (!kept_.empty() && bytes > most_bytes_) {
+        // Where all of them are too few for the new one, it is that which goes.
+        const auto first = made->size_bytes() > most_bytes_ ? kept_.end() - 1 : kept_.begin();
+        bytes -= first->second->size_bytes();
+        kept_.erase(first);
+    }
     return made;
 }
 

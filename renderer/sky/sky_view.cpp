@@ -6,6 +6,7 @@
 #include "renderer/sky/phase.h"
 #include "renderer/sky/shadow_edges.h"
 #include "renderer/sky/sky_sun.h"
+#include "renderer/sky/sunlit_path.h"
 
 #include <algorithm>
 #include <array>
@@ -46,19 +47,8 @@ void SkyView::fill(std::size_t index, const ScatteredLight* scattered)
         LightPath cut;
         if (!edges.empty()) cut = light_path(air_, nullptr, ray, size_.points, edges);
         const LightPath& path = edges.empty() ? whole : cut;
-        const std::size_t n = path.places.size();
         Lanes* const out = &light_[(index * size_.azimuths + a) * groups_ * kParts];
-        for (std::size_t i = 0; i < n; ++i) {
-            const LightPath::Place& place = path.places[i];
-            const double mu_sun = (path.start_radius * mu_sun_ + place.along * nu) * place.inverse_radius;
-            const SunThroughAir sun(air_, columns_, place.altitude, std::clamp(mu_sun, -1.0, 1.0));
-            if (sun.hidden()) continue;
-            for (std::size_t g = 0; g < groups_; ++g) {
-                const Lanes reaching = sun.transmittance(air_, g);
-                out[g * kParts] += path.rayleigh[g * n + i] * reaching;
-                out[g * kParts + 1] += path.mie[g * n + i] * reaching;
-            }
-        }
+        add_sunlight(air_, columns_, path, mu_sun_, nu, out, kParts);
         Spectrum more{};
         if (scattered) more = scattered->radiance(to_gather, mu_sun_, nu);
         const double sun_on_ground =

@@ -145,6 +145,7 @@ JobOutcome picture_of(const JobRun& run,
         api::write_report(rendered.report, run.id, run.render_key, run.request.settings.quality, false);
     api::JobRequest executed = run.request;
     executed.scene = std::move(scene.description);
+    executed.settings.image.exposure_ev = exposure_ev;
     outcome.result.scene_json = api::write_job(executed, false);
     outcome.result.samples = rendered.report.accuracy.samples;
     outcome.result.reusable = rendered.report.accuracy.stop_reason == renderer::StopReason::samples;

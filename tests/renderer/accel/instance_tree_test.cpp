@@ -2,6 +2,7 @@
 #include "renderer/accel/prepared_mesh.h"
 #include "renderer/geometry/shapes.h"
 #include "tests/renderer/accel/random_scenes.h"
+#include "tests/support/thinning.h"
 
 #include <gtest/gtest.h>
 
@@ -14,11 +15,7 @@ namespace {
 using namespace renderer;
 using random_scenes::Random;
 
-#ifdef HELIOGRAPH_SANITIZED
-constexpr int kThinning = 20;
-#else
-constexpr int kThinning = 1;
-#endif
+using tests::kThinning;
 
 // Keeps meshes alive while instances point at them.
 class Objects {

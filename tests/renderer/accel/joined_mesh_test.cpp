@@ -1,6 +1,7 @@
 #include "renderer/accel/instance_tree.h"
 #include "renderer/geometry/shapes.h"
 #include "tests/renderer/accel/random_scenes.h"
+#include "tests/support/thinning.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +14,7 @@ namespace {
 using namespace renderer;
 using random_scenes::Random;
 
-#ifdef HELIOGRAPH_SANITIZED
-constexpr int kThinning = 20;
-#else
-constexpr int kThinning = 1;
-#endif
+using tests::kThinning;
 
 class Objects {
 public:
@@ -250,4 +247,19 @@ TEST(JoinedMesh, PrefersTheLowestInstanceAmongEquals)
             ASSERT_EQ(hit->instance, 1u) << first_is_joined;
         }
     }
+}
+
+TEST(JoinedMesh, OfTrianglesWithoutAreaIsNeverHit)
+{
+    Objects objects;
+    for (int i = 0; i < 3; ++i) {
+        Mesh needle;
+        needle.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+        needle.triangles = {{0, 1, 2}};
+        objects.add(std::move(needle), Affine3::translate({static_cast<double>(i), 0, 0}));
+    }
+    const InstanceTree tree = objects.joined();
+    Random random(3);
+    for (int i = 0; i < 100; ++i)
+        EXPECT_FALSE(tree.closest_hit(random_ray(random)));
 }

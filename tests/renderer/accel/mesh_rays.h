@@ -5,6 +5,7 @@
 #include "renderer/accel/mesh_bvh.h"
 #include "renderer/geometry/mesh_frame.h"
 #include "tests/renderer/accel/random_scenes.h"
+#include "tests/support/thinning.h"
 
 #include <gtest/gtest.h>
 
@@ -17,11 +18,7 @@ namespace renderer::mesh_rays {
 
 using namespace random_scenes;
 
-#ifdef HELIOGRAPH_SANITIZED
-inline constexpr int kThinning = 20;
-#else
-inline constexpr int kThinning = 1;
-#endif
+using tests::kThinning;
 
 inline MeshBvh build(const Mesh& mesh, BvhSplit split = BvhSplit::sah)
 {

@@ -1,6 +1,7 @@
 #include "renderer/geometry/surface_point.h"
 #include "renderer/geometry/triangle.h"
 #include "tests/renderer/accel/random_scenes.h"
+#include "tests/support/thinning.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +12,7 @@ namespace {
 using namespace renderer;
 using random_scenes::Random;
 
-#ifdef HELIOGRAPH_SANITIZED
-constexpr int kThinning = 20;
-#else
-constexpr int kThinning = 1;
-#endif
+using tests::kThinning;
 
 TEST(OffsetOrigin, LeavesOnTheSideOfTheDirection)
 {

@@ -1,5 +1,6 @@
 #include "renderer/geometry/triangle.h"
 #include "tests/renderer/accel/random_scenes.h"
+#include "tests/support/thinning.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +14,7 @@ using namespace renderer;
 using random_scenes::closed_sphere;
 using random_scenes::Random;
 
-#ifdef HELIOGRAPH_SANITIZED
-constexpr int kThinning = 20;
-#else
-constexpr int kThinning = 1;
-#endif
+using tests::kThinning;
 
 template <typename T>
 Vec3<T> as(Vec3d v)

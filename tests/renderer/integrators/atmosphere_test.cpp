@@ -169,3 +169,27 @@ TEST(Atmosphere, ChoosesAnExposureByItsSunUnlessOneIsGiven)
     EXPECT_GT(ev(-5, {}), ev(5, {}));
     EXPECT_NEAR(ev(60, {}, 6), -1, 1e-6);
 }
+
+TEST(Atmosphere, IsNotMadeWhereShapesAloneAreLookedAt)
+{
+    ThreadPool pool(1);
+    for (const TransportType type : {TransportType::normals, TransportType::ambient_occlusion}) {
+        TestScene test = metered(atmosphere(60), {0, 1, 0}, {0, 0, -1});
+        add_plate(test, {0, 1, -900}, 0, 1, {0.5f, 0.5f, 0.5f});
+        test.description.transport.type = type;
+        const auto ready = tests::make_ready(test, pool);
+        EXPECT_FALSE(ready.plan.sky);
+        EXPECT_EQ(ready.plan.exposure_ev, 0);
+        EXPECT_EQ(ready.scene->sky(), nullptr);
+    }
+}
+
+TEST(Atmosphere, CountsLightsWithAShapeAmongWhatIsSeenThroughAir)
+{
+    ThreadPool pool(1);
+    TestScene test = metered(atmosphere(40), {0, 1, 0}, {0, 0, -1});
+    SphereLight lamp;
+    lamp.world_from_light.translation = {0, 1, -5000};
+    test.description.lights.emplace_back(lamp);
+    EXPECT_NEAR(tests::make_ready(test, pool).plan.sky->far_m, 5000, 2);
+}

@@ -33,12 +33,25 @@ TEST(SkyCache, GivesOneAirForEverySunAndPlace)
 TEST(SkyCache, ForgetsTheAirThatWasAskedForLongestAgo)
 {
     ThreadPool pool(1);
-    SkyCache cache(2);
+    SkyCache cache(5 * Sky(air(8000), pool).size_bytes() / 2); // two and a half
     const auto a = cache.get(air(8000), pool), b = cache.get(air(7000), pool);
     EXPECT_EQ(cache.get(air(8000), pool), a);
     cache.get(air(6000), pool);
     EXPECT_EQ(cache.get(air(8000), pool), a);
     EXPECT_NE(cache.get(air(7000), pool), b);
+}
+
+TEST(SkyCache, DoesNotKeepAnAirThatIsLargerThanItself)
+{
+    ThreadPool pool(1);
+    AtmosphereDescription large = air(8000);
+    large.scattering = SkyScattering::multiple;
+    large.mode = SkyMode::fast;
+    const std::size_t small = Sky(air(8000), pool).size_bytes();
+    SkyCache cache(3 * small);
+    const auto kept = cache.get(air(8000), pool);
+    EXPECT_GT(cache.get(large, pool)->size_bytes(), 3 * small);
+    EXPECT_EQ(cache.get(air(8000), pool), kept);
 }
 
 TEST(SkyCache, KeepsNothingOfAnAirThatWasGivenUp)
