@@ -2,6 +2,7 @@
 
 #include "renderer/io/assimp_scene.h"
 #include "renderer/io/gltf_buffers.h"
+#include "renderer/io/gltf_emission.h"
 #include "renderer/io/gltf_outline.h"
 #include "renderer/io/gltf_tree.h"
 #include "renderer/io/import_bounds.h"
@@ -32,6 +33,23 @@ read(const std::string& format, std::span<const std::byte> bytes, CompanionFiles
     return read_with_assimp({.format = format, .importer = "glTF2", .title = "glTF"}, bytes, files, limits);
 }
 
+ImportResult read_json(std::string_view json, CompanionFiles& files, const Limits& limits)
+{
+    const auto stronger = with_emissive_strength(json);
+    return read(
+        "gltf", std::as_bytes(std::span(stronger ? std::string_view(*stronger) : json)), files, limits);
+}
+
+ImportResult read_binary(std::span<const std::byte> bytes,
+                         std::span<const std::byte> json,
+                         CompanionFiles& files,
+                         const Limits& limits)
+{
+    const auto stronger = with_emissive_strength(text_of(json));
+    if (!stronger) return read("glb", bytes, files, limits);
+    return read("glb", glb_with_json(bytes, json.size(), *stronger), files, limits);
+}
+
 std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t offset)
 {
     std::uint32_t word = 0;
@@ -45,7 +63,7 @@ std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t offset)
 ImportResult read_gltf(std::span<const std::byte> bytes, CompanionFiles& files, const Limits& limits)
 {
     if (auto bad = check(text_of(bytes), std::nullopt, files, limits)) return std::move(*bad);
-    return read("gltf", bytes, files, limits);
+    return read_json(text_of(bytes), files, limits);
 }
 
 // 12 bytes of header, then chunks of (length, type, bytes): the first is the JSON.
@@ -82,7 +100,8 @@ ImportResult read_glb(std::span<const std::byte> bytes, CompanionFiles& files, c
     const auto json = bytes.subspan(20, json_length);
     if (auto bad = check(text_of(json), binary, files, limits)) return std::move(*bad);
     // Without a binary chunk assimp takes the first buffer for an empty one, whatever its URI holds.
-    ImportResult result = binary ? read("glb", bytes, files, limits) : read("gltf", json, files, limits);
+    ImportResult result =
+        binary ? read_binary(bytes, json, files, limits) : read_json(text_of(json), files, limits);
     if (auto* mesh = std::get_if<ImportedMesh>(&result)) mesh->format = "glb";
     return result;
 }

@@ -93,6 +93,11 @@ bool is_map(std::string_view word)
            word == "refl" || word == "norm";
 }
 
+bool is_bump(std::string_view word)
+{
+    return word == "bump" || word == "map_bump" || word == "map_Bump";
+}
+
 // Whether the material's line has a value beyond `least`: for what is told and not modelled.
 bool take_above(std::string_view line, float least, bool& above)
 {
@@ -153,7 +158,8 @@ private:
     std::vector<std::string>& notes_;
     MeshMaterial* material_ = nullptr;
     bool has_color_ = false;
-    std::size_t colorless_ = 0;
+    bool has_bumps_ = false;
+    std::size_t colorless_ = 0, bumpy_ = 0;
     std::string colorless_names_; // of the first few
 };
 
@@ -184,6 +190,7 @@ void MtlReader::map(std::string_view word, std::string_view rest)
     if (name.empty() || m.textures.size() == 64) return;
     m.textures.push_back(clean_utf8(name));
     if (word == "map_Ke") m.emits = true;
+    if (is_bump(word)) has_bumps_ = true;
     std::optional<TextureUse>* const use = word == "map_Kd"                       ? &m.color_map
                                            : word == "map_Ks"                     ? &m.specular_map
                                            : word == "map_d"                      ? &m.alpha_map
@@ -205,6 +212,7 @@ void MtlReader::end_material()
 {
     constexpr std::size_t kMostNames = 4;
     if (!material_) return;
+    if (has_bumps_) ++bumpy_;
     // What a picture would light up in places must not shine all over.
     if (material_->emits) material_->emission = {};
     if (has_color_) return;
@@ -236,7 +244,7 @@ bool MtlReader::read()
             if (materials_.size() == kMostMaterials) return false;
             material_ = &materials_.emplace_back();
             material_->name = clean_utf8(trimmed(rest));
-            has_color_ = false;
+            has_color_ = has_bumps_ = false;
         } else if (!statement(word, rest) && ++bad_lines <= kMostBadLines) {
             note(clean_utf8(file_) + ", line " + std::to_string(lines_.number()) + ": " +
                  quoted(trimmed(*line)) + " cannot be read; the default stays");
@@ -248,6 +256,10 @@ bool MtlReader::read()
              (colorless_ == 1 ? " material has no readable Kd and is grey (0.5): "
                               : " materials have no readable Kd and are grey (0.5): ") +
              colorless_names_);
+    if (bumpy_)
+        note(quoted(file_) + ": " + std::to_string(bumpy_) +
+             (bumpy_ == 1 ? " material has a bump map" : " materials have bump maps") +
+             ", heights in no known unit, which are left out; a map of normals is named by norm");
     return true;
 }
 

@@ -1,4 +1,5 @@
 #include "renderer/io/gltf_buffers.h"
+#include "renderer/io/gltf_emission.h"
 #include "renderer/io/gltf_outline.h"
 #include "renderer/io/gltf_tree.h"
 #include "renderer/io/import_mesh.h"
@@ -146,6 +147,88 @@ TEST(ReadGltf, TakesTheEmissionOfItsMaterials)
     };
     EXPECT_EQ(emission(R"("name":"b")"), renderer::Rgb{});
     EXPECT_EQ(emission(R"("name":"b","emissiveFactor":[1,0.5,0.25])"), (renderer::Rgb{1, 0.5f, 0.25f}));
+}
+
+// Two triangles; the second material of the file is used first, and one that nobody uses stands before both.
+std::string two_lamps(const std::string& buffer)
+{
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":1},{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":1}]},
+                  {"primitives":[{"attributes":{"POSITION":0},"material":2}]}],
+        "materials":[
+            {"name":"idle","emissiveFactor":[1,1,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":9}}},
+            {"name":"lamp","extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":4.5}},
+             "emissiveFactor": [
+                 1.0,
+                 0.5, 0
+             ]},
+            {"name":"lamp","emissiveFactor":[0.25,0.25,1],"extensions":{"KHR_materials_emissive_strength":{}}}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{)" +
+           buffer + R"("byteLength":36}],"extensionsUsed":["KHR_materials_emissive_strength"]})";
+}
+
+// Of the material that each triangle has.
+std::vector<renderer::Rgb> emissions_of(const std::string& name, const std::string& bytes)
+{
+    const auto result = import_text(name, bytes);
+    EXPECT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
+    const renderer::Mesh& mesh = std::get<ImportedMesh>(result).mesh;
+    std::vector<renderer::Rgb> emissions;
+    for (const std::uint16_t material : mesh.triangle_materials)
+        emissions.push_back(mesh.materials.at(material).emission);
+    return emissions;
+}
+
+TEST(ReadGltf, MultipliesEmissionByTheStrengthOfItsOwnMaterial)
+{
+    const std::vector<renderer::Rgb> want{{0.25f, 0.25f, 1}, {4.5f, 2.25f, 0}};
+    EXPECT_EQ(
+        emissions_of(
+            "t.gltf",
+            two_lamps(
+                R"("uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",)")),
+        want);
+    std::string corners(36, '\0');
+    for (const std::size_t at : {12u, 28u})
+        corners.replace(at, 4, std::string("\0\0\x80\x3f", 4));
+    std::string json = two_lamps("");
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t number) {
+        std::string bytes;
+        for (unsigned shift = 0; shift < 32; shift += 8)
+            bytes += static_cast<char>(number >> shift & 0xff);
+        return bytes;
+    };
+    EXPECT_EQ(emissions_of("t.glb",
+                           "glTF" + word(2) + word(12 + 8 + json.size() + 8 + 36) + word(json.size()) +
+                               "JSON" + json + word(36) + std::string("BIN\0", 4) + corners),
+              want);
+}
+
+TEST(GltfEmission, LeavesAloneWhatItNeedNotChange)
+{
+    const auto scaled = [](const std::string& material) {
+        return renderer::with_emissive_strength("{\"materials\":[{" + material + "}]}").value_or("none");
+    };
+    const std::string factor = R"("emissiveFactor":[1,2,3])";
+    const auto strength = [](const std::string& value) {
+        return R"(,"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":)" + value + "}}";
+    };
+    EXPECT_EQ(scaled(factor + strength("2")),
+              R"({"materials":[{"emissiveFactor":[2,4,6])" + strength("2") + "}]}");
+    EXPECT_NE(scaled(factor + strength("2e38")).find("3.40282347e+38"), std::string::npos);
+    for (const std::string& material : {factor,
+                                        factor + strength("1"),
+                                        factor + strength("-2"),
+                                        factor + strength("\"2\""),
+                                        R"("name":"x")" + strength("2"),
+                                        R"("emissiveFactor":[1,2])" + strength("2"),
+                                        R"("emissiveFactor":[1,2,3,4])" + strength("2"),
+                                        R"("emissiveFactor":5)" + strength("2")})
+        EXPECT_EQ(scaled(material), "none") << material;
+    for (const char* json : {"", "{", "[]", R"({"materials":{}})", R"({"materials":[1]})"})
+        EXPECT_FALSE(renderer::with_emissive_strength(json)) << json;
 }
 
 TEST(GltfOutline, RefusesNodesThatAreNoTrees)

@@ -248,6 +248,17 @@ TEST(ReadObj, TakesEmissionOfAnyStrengthButNotByAPicture)
     EXPECT_FALSE(materials[0].emits || materials[1].emits);
 }
 
+TEST(ReadObj, SaysThatMapsOfHeightsAreLeftOut)
+{
+    const std::string text = "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n";
+    const auto notes = [&](const std::string& mtl) { return mesh_of(text, {{"a.mtl", mtl}}).notes; };
+    EXPECT_THAT(notes("newmtl a\nKd 1 1 1\nmap_Bump -bm 0.2 h.png\nbump h.png\nnewmtl b\nKd 1 1 1\n"),
+                testing::ElementsAre(testing::HasSubstr("\"a.mtl\": 1 material has a bump map, heights")));
+    EXPECT_THAT(notes("newmtl a\nKd 1 1 1\nbump h.png\nnewmtl b\nKd 1 1 1\nmap_bump h.png\n"),
+                testing::ElementsAre(testing::HasSubstr("2 materials have bump maps")));
+    EXPECT_THAT(notes("newmtl a\nKd 1 1 1\n"), testing::IsEmpty());
+}
+
 TEST(ReadObj, SaysWhenItsMtlIsMissing)
 {
     const ImportedMesh result = mesh_of("mtllib gone.mtl\nusemtl red\n" + kSquare + "f 1 2 3\n");
