@@ -68,7 +68,10 @@ bool write(Encoder& encoder, const CodedImage<Code>& image, const png_text* text
                  PNG_FILTER_TYPE_DEFAULT);
     png_set_filter(encoder.png, PNG_FILTER_TYPE_BASE, kFilter);
     png_set_compression_level(encoder.png, kLevel);
-    if (image.srgb) png_set_sRGB(encoder.png, encoder.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (image.srgb)
+        png_set_sRGB(encoder.png, encoder.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    else
+        png_set_gAMA_fixed(encoder.png, encoder.info, PNG_GAMMA_LINEAR);
     if (text_count > 0) png_set_text(encoder.png, encoder.info, texts, text_count);
     png_write_info(encoder.png, encoder.info);
     if (sizeof(Code) > 1 && std::endian::native == std::endian::little) png_set_swap(encoder.png);

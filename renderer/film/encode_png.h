@@ -1,4 +1,4 @@
-// PNG: codes of 8 or 16 bits a channel, marked as sRGB if they are; texts as iTXt chunks.
+// PNG: codes of 8 or 16 bits a channel, marked as sRGB if they are, else as linear (gAMA 1); texts as iTXt chunks.
 //
 // Source  W3C REC-PNG-20031110.
 // Errors  std::runtime_error if the picture has no pixels; std::bad_alloc. The same pixels and texts give the

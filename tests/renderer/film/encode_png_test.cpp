@@ -62,7 +62,7 @@ TEST(Png, CarriesTheColourSpaceAndItsTexts)
     EXPECT_NE(bytes.find(std::string("sRGB\0\xae\xce\x1c\xe9", 9)), std::string::npos);
     EXPECT_NE(bytes.find(std::string("heliograph\0\0\0\0\0seed=1", 21)), std::string::npos);
     image.srgb = false;
-    EXPECT_EQ(chunk_types(encode_png(image)), "IHDR IDAT IEND ");
+    EXPECT_EQ(chunk_types(encode_png(image)), "IHDR gAMA IDAT IEND ");
 }
 
 TEST(Png, HasTheSameBytesForTheSamePixels)
