@@ -80,10 +80,11 @@ public:
         std::stop_token stop,
         const ProgressSink& progress)
         : scene_(scene), plan_(plan), settings_(settings), pool_(pool), stop_(std::move(stop)),
-          film_(region_of(settings.image)),
+          film_(region_of(settings.image), plan.layers),
+          bytes_a_pixel_(sizeof(RgbSum) + layer_sum_bytes(plan.layers)),
           grid_(film_.region,
                 tile_side(settings.acceleration.tile_px,
-                          kMergeBytes / sizeof(RgbSum) / (kUnitsAThread * pool.size()))),
+                          kMergeBytes / bytes_a_pixel_ / (kUnitsAThread * pool.size()))),
           target_(target_of(settings.quality)), teller_(progress, target_, settings.quality.time_s, start_)
     {
     }
@@ -174,7 +175,7 @@ private:
     // Units that may wait for an older one; tiles are small enough that there is room for a few a thread.
     std::size_t window() const
     {
-        const std::size_t bytes = grid_.largest_tile_pixels() * sizeof(RgbSum);
+        const std::size_t bytes = grid_.largest_tile_pixels() * bytes_a_pixel_;
         return std::max(kUnitsAThread * pool_.size(), std::min(kMergeBytes / bytes, std::size_t{4096}));
     }
 
@@ -207,6 +208,7 @@ private:
     ThreadPool& pool_;
     std::stop_token stop_;
     Film film_;
+    std::size_t bytes_a_pixel_; // of the sums of a unit
     TileGrid grid_;
     std::uint32_t target_;
     RayTally tally_;

@@ -26,7 +26,7 @@ constexpr std::uint32_t kBlock = 4;
 class SampleRuns {
 public:
     SampleRuns(const Scene& scene, const Plan& plan, const std::stop_token& stop, TracedUnit& out)
-        : scene_(scene), plan_(plan), stop_(stop), out_(out)
+        : scene_(scene), plan_(plan), stop_(stop), out_(out), first_(plan.layers.empty() ? 0 : kMostSamples)
     {
     }
 
@@ -59,6 +59,8 @@ public:
                 out_.sums.sums[pixels_[i]] += found[i];
             else
                 ++out_.tally.non_finite_samples;
+            if (first_.empty() || !first_[i].is_there) continue;
+            out_.sums.layers.add(pixels_[i], first_[i].distance_m, first_[i].normal, first_[i].albedo);
         }
         count_ = 0;
     }
@@ -72,15 +74,16 @@ private:
         RayTally& tally = out_.tally;
         switch (plan_.integrator) {
         case Integrator::direct:
-            return direct_radiance(scene_, samples, found, tally, stop_);
+            return direct_radiance(scene_, samples, found, tally, stop_, first_);
         case Integrator::whitted:
-            return whitted_radiance(scene_, plan_.max_depth, samples, found, tally, stop_);
+            return whitted_radiance(scene_, plan_.max_depth, samples, found, tally, stop_, first_);
         case Integrator::path:
-            return path_radiance(scene_, {plan_.max_depth, plan_.clamp}, samples, found, tally, stop_);
+            return path_radiance(
+                scene_, {plan_.max_depth, plan_.clamp}, samples, found, tally, stop_, first_);
         case Integrator::ambient_occlusion:
-            return occlusion_radiance(scene_, samples, found, tally, stop_);
+            return occlusion_radiance(scene_, samples, found, tally, stop_, first_);
         case Integrator::normals:
-            return normals_radiance(scene_, samples, found, tally, stop_);
+            return normals_radiance(scene_, samples, found, tally, stop_, first_);
         }
     }
 
@@ -92,6 +95,7 @@ private:
     std::size_t count_ = 0;
     CameraSample samples_[kMostSamples];
     std::size_t pixels_[kMostSamples]; // of the tile
+    std::vector<FirstHit> first_;      // where layers are asked for
 };
 
 // The slice of one block of the tile, sample by sample, so that a pixel's samples add up in their order.
@@ -121,7 +125,8 @@ std::optional<TracedUnit> trace(const Scene& scene,
                                 const std::stop_token& stop)
 {
     const PixelRect& tile = unit.tile;
-    TracedUnit out{{tile, std::vector<RgbSum>(std::size_t{tile.width} * tile.height)}, {}};
+    const std::size_t pixels = std::size_t{tile.width} * tile.height;
+    TracedUnit out{{tile, std::vector<RgbSum>(pixels), LayerSums(plan.layers, pixels)}, {}};
     SampleRuns runs(scene, plan, stop, out);
     for (std::uint32_t y = 0; y < tile.height; y += kBlock) {
         for (std::uint32_t x = 0; x < tile.width; x += kBlock) {

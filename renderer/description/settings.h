@@ -1,6 +1,8 @@
 // How to render a scene: picture, quality, seed and measuring switches. Input, like SceneDescription.
 #pragma once
 
+#include "renderer/description/layers.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,6 +23,7 @@ struct ImageSettings {
     // Radiance is multiplied by 2^exposure_ev before the tone curve; nothing: the plan chooses (0 without an atmosphere).
     std::optional<double> exposure_ev;
     Tone tone = Tone::srgb;
+    LayerSet layers{}; // what is kept beside the picture
     friend bool operator==(const ImageSettings&, const ImageSettings&) = default;
 };
 

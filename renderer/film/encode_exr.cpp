@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 #include <string_view>
+#include <utility>
 #include <zlib.h>
 
 namespace renderer {
@@ -180,6 +181,25 @@ std::vector<ExrChannel> exr_channels(const LinearImage& image)
     static_assert(sizeof(Rgb) == 3 * sizeof(float));
     const auto* first = reinterpret_cast<const float*>(image.pixels.data());
     return {{"R", first, 3}, {"G", first + 1, 3}, {"B", first + 2, 3}};
+}
+
+std::vector<ExrChannel> exr_channels(const LayerImage& layer, std::string_view prefix)
+{
+    const LayerEntry& entry = entry_of(layer.layer);
+    std::vector<ExrChannel> channels;
+    for (std::size_t c = 0; c < entry.channel_count(); ++c)
+        channels.push_back(
+            {std::string(prefix).append(entry.channels[c]), layer.values.data() + c, entry.channel_count()});
+    return channels;
+}
+
+std::vector<ExrChannel> exr_channels(const Picture& picture)
+{
+    std::vector<ExrChannel> channels = exr_channels(picture.image);
+    for (const LayerImage& layer : picture.layers)
+        for (ExrChannel& channel : exr_channels(layer, entry_of(layer.layer).prefix))
+            channels.push_back(std::move(channel));
+    return channels;
 }
 
 } // namespace renderer

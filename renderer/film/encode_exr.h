@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace renderer {
@@ -29,5 +30,9 @@ std::vector<std::uint8_t> encode_exr(std::uint32_t width_px,
 
 // R, G and B.
 std::vector<ExrChannel> exr_channels(const LinearImage& image);
+// The layer's own, each name behind `prefix`.
+std::vector<ExrChannel> exr_channels(const LayerImage& layer, std::string_view prefix);
+// All of a picture's: R, G, B and those of its layers, by the names that description/layers.h has for them there.
+std::vector<ExrChannel> exr_channels(const Picture& picture);
 
 } // namespace renderer

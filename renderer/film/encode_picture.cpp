@@ -22,7 +22,7 @@ std::vector<std::uint8_t> encode_picture(const Picture& picture, const PictureEn
     case PictureFormat::hdr:
         return encode_hdr(image, picture.texts);
     case PictureFormat::exr:
-        return encode_exr(image.width_px, image.height_px, exr_channels(image), picture.texts);
+        return encode_exr(image.width_px, image.height_px, exr_channels(picture), picture.texts);
     case PictureFormat::pfm:
         return encode_pfm(image);
     }

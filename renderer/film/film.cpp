@@ -2,7 +2,10 @@
 
 namespace renderer {
 
-Film::Film(PixelRect rect) : region(rect), sums(std::size_t{rect.width} * rect.height) {}
+Film::Film(PixelRect rect, LayerSet asked)
+    : region(rect), sums(std::size_t{rect.width} * rect.height), layers(asked, sums.size())
+{
+}
 
 void Film::merge(const TileSums& part)
 {
@@ -10,6 +13,7 @@ void Film::merge(const TileSums& part)
     std::size_t from = 0;
     for (std::uint32_t y = 0; y < t.height; ++y) {
         const std::size_t row = std::size_t{t.y - region.y + y} * region.width + (t.x - region.x);
+        layers.add(part.layers, from, row, t.width);
         for (std::uint32_t x = 0; x < t.width; ++x)
             sums[row + x] += part.sums[from++];
     }

@@ -1,5 +1,5 @@
 // Film: the linear picture while it is made: a sum of radiance and a count for every pixel of the image's
-// region.
+// region, and the sums of the layers beside it.
 //
 // Frame    row-major, top row first; pixel (0,0) is the region's top left corner.
 // Units    radiance, linear Rec. 709, W/(m^2 sr).
@@ -9,6 +9,7 @@
 
 #include "renderer/color/rgb.h"
 #include "renderer/description/settings.h"
+#include "renderer/film/layer_sums.h"
 
 #include <cstdint>
 #include <vector>
@@ -21,41 +22,22 @@ struct LinearImage {
     std::vector<Rgb> pixels; // row-major, top row first
 };
 
-// Many samples added up: double, so that 65,536 of them lose nothing that a picture shows.
-struct RgbSum {
-    double r{}, g{}, b{};
-
-    RgbSum& operator+=(Rgb c)
-    {
-        r += static_cast<double>(c.r);
-        g += static_cast<double>(c.g);
-        b += static_cast<double>(c.b);
-        return *this;
-    }
-    RgbSum& operator+=(const RgbSum& o)
-    {
-        r += o.r;
-        g += o.g;
-        b += o.b;
-        return *this;
-    }
-    friend bool operator==(const RgbSum&, const RgbSum&) = default;
-};
-
 // What one slice of samples adds to one tile.
 struct TileSums {
     PixelRect tile;           // of the full picture
     std::vector<RgbSum> sums; // row-major within the tile
+    LayerSums layers{};       // of the same pixels
 };
 
 struct Film {
     PixelRect region;          // of the full picture
     std::uint32_t samples = 0; // merged into every pixel so far
     std::vector<RgbSum> sums;  // row-major within region
+    LayerSums layers;
 
-    explicit Film(PixelRect region = {}); // black
-    void merge(const TileSums& part);     // the tile lies within the region
-    LinearImage mean() const;             // black before the first sample
+    explicit Film(PixelRect region = {}, LayerSet layers = {}); // black
+    void merge(const TileSums& part); // the tile lies within the region, and has the same layers
+    LinearImage mean() const;         // black before the first sample
 };
 
 } // namespace renderer

@@ -21,7 +21,8 @@ using PictureTexts = std::vector<PictureText>;
 
 struct Picture {
     LinearImage image;
-    double exposure_ev = 0; // of what a display shows; formats that hold radiance hold it as it is
+    std::vector<LayerImage> layers{}; // of the same pixels
+    double exposure_ev = 0;           // of what a display shows; formats that hold radiance hold it as it is
     Tone tone = Tone::srgb;
     PictureTexts texts;
 };

@@ -8,7 +8,8 @@ void direct_radiance(const Scene& scene,
                      std::span<const CameraSample> samples,
                      std::span<Rgb> radiance,
                      RayTally& tally,
-                     const std::stop_token& stop)
+                     const std::stop_token& stop,
+                     FirstHits first)
 {
     Ray rays[kMostSamples];
     SceneHit hits[kMostSamples];
@@ -16,6 +17,7 @@ void direct_radiance(const Scene& scene,
         rays[i] = samples[i].ray;
     tally.camera_rays += samples.size();
     const std::uint64_t seen = scene.closest_hits({rays, samples.size()}, hits, RayKind::camera);
+    note_first_hits(scene, samples, hits, seen, first);
 
     Surface surfaces[kMostSamples];
     BsdfRoom rooms[kMostSamples];

@@ -8,7 +8,7 @@
 // Source  the light transport equation cut after one scattering: J. Kajiya, "The Rendering Equation", 1986.
 #pragma once
 
-#include "renderer/integrators/radiance.h"
+#include "renderer/integrators/first_hits.h"
 
 #include <span>
 #include <stop_token>
@@ -22,6 +22,7 @@ void direct_radiance(const Scene& scene,
                      std::span<const CameraSample> samples,
                      std::span<Rgb> radiance,
                      RayTally& tally,
-                     const std::stop_token& stop);
+                     const std::stop_token& stop,
+                     FirstHits first = {});
 
 } // namespace renderer

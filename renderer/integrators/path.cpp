@@ -51,7 +51,7 @@ public:
     {
     }
 
-    void run(std::span<const CameraSample> samples)
+    void run(std::span<const CameraSample> samples, FirstHits first)
     {
         for (std::size_t i = 0; i < samples.size(); ++i) {
             paths_[i] = Path{
@@ -59,8 +59,11 @@ public:
             radiance_[i] = {};
         }
         count_ = samples.size();
-        for (RayKind kind = RayKind::camera; count_ != 0 && !stop_.stop_requested(); kind = RayKind::other)
-            step(kind);
+        if (count_ == 0 || stop_.stop_requested()) return;
+        const std::uint64_t met = step(RayKind::camera);
+        note_first_hits(scene_, samples, hits_, met, first);
+        while (count_ != 0 && !stop_.stop_requested())
+            step(RayKind::other);
     }
 
 private:
@@ -81,8 +84,8 @@ private:
         add(path, background(scene_, path.ray.direction, in_full ? 0 : path.pdf));
     }
 
-    // Every path by one ray, and on.
-    void step(RayKind kind)
+    // Every path by one ray, and on. Which of them met something.
+    std::uint64_t step(RayKind kind)
     {
         for (std::size_t i = 0; i < count_; ++i)
             rays_[i] = paths_[i].ray;
@@ -96,6 +99,7 @@ private:
                 add_background(paths_[i]);
         light();
         go_on();
+        return met;
     }
 
     // What shines at a surface, and whether the path turns there.
@@ -248,9 +252,10 @@ void path_radiance(const Scene& scene,
                    std::span<const CameraSample> samples,
                    std::span<Rgb> radiance,
                    RayTally& tally,
-                   const std::stop_token& stop)
+                   const std::stop_token& stop,
+                   FirstHits first)
 {
-    PathRun(scene, limits, radiance, tally, stop).run(samples);
+    PathRun(scene, limits, radiance, tally, stop).run(samples, first);
 }
 
 } // namespace renderer

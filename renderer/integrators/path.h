@@ -8,7 +8,7 @@
 // Cost    a scattering: one ray, one shadow ray a listed light; no allocation, no recursion, no virtual call.
 #pragma once
 
-#include "renderer/integrators/radiance.h"
+#include "renderer/integrators/first_hits.h"
 
 #include <cstdint>
 #include <limits>
@@ -32,6 +32,7 @@ void path_radiance(const Scene& scene,
                    std::span<const CameraSample> samples,
                    std::span<Rgb> radiance,
                    RayTally& tally,
-                   const std::stop_token& stop);
+                   const std::stop_token& stop,
+                   FirstHits first = {});
 
 } // namespace renderer

@@ -7,8 +7,11 @@ namespace renderer {
 namespace {
 
 // What the samples see first: bit i of the result is set where sample i met surfaces[i].
-std::uint64_t
-look(const Scene& scene, std::span<const CameraSample> samples, Surface* surfaces, RayTally& tally)
+std::uint64_t look(const Scene& scene,
+                   std::span<const CameraSample> samples,
+                   Surface* surfaces,
+                   RayTally& tally,
+                   FirstHits first)
 {
     Ray rays[kMostSamples];
     SceneHit hits[kMostSamples];
@@ -16,6 +19,7 @@ look(const Scene& scene, std::span<const CameraSample> samples, Surface* surface
         rays[i] = samples[i].ray;
     tally.camera_rays += samples.size();
     const std::uint64_t met = scene.closest_hits({rays, samples.size()}, hits, RayKind::camera);
+    note_first_hits(scene, samples, hits, met, first);
     BsdfRoom room; // normals alone are looked at
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if ((met >> i & 1) == 0) continue;
@@ -32,10 +36,11 @@ void occlusion_radiance(const Scene& scene,
                         std::span<const CameraSample> samples,
                         std::span<Rgb> radiance,
                         RayTally& tally,
-                        const std::stop_token& stop)
+                        const std::stop_token& stop,
+                        FirstHits first)
 {
     Surface surfaces[kMostSamples];
-    const std::uint64_t met = look(scene, samples, surfaces, tally);
+    const std::uint64_t met = look(scene, samples, surfaces, tally, first);
     Ray rays[kMostSamples];
     std::size_t of_ray[kMostSamples], count = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -60,10 +65,11 @@ void normals_radiance(const Scene& scene,
                       std::span<const CameraSample> samples,
                       std::span<Rgb> radiance,
                       RayTally& tally,
-                      const std::stop_token& /*stop*/)
+                      const std::stop_token& /*stop*/,
+                      FirstHits first)
 {
     Surface surfaces[kMostSamples];
-    const std::uint64_t met = look(scene, samples, surfaces, tally);
+    const std::uint64_t met = look(scene, samples, surfaces, tally, first);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const Vec3f n = surfaces[i].shading.z;
         radiance[i] = (met >> i & 1) != 0 ? Rgb{(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2} : Rgb{};

@@ -37,7 +37,7 @@ public:
     {
     }
 
-    void run(std::span<const CameraSample> samples)
+    void run(std::span<const CameraSample> samples, FirstHits first)
     {
         for (std::size_t i = 0; i < samples.size(); ++i) {
             waiting_.push_back(
@@ -48,9 +48,11 @@ public:
         for (std::size_t done = 0; done < waiting_.size() && !stop_.stop_requested();) {
             const std::size_t count = std::min(waiting_.size() - done, kMostSamples);
             std::copy_n(waiting_.begin() + static_cast<std::ptrdiff_t>(done), count, branches_);
-            follow(count, kind);
+            const std::uint64_t met = follow(count, kind);
+            // The samples are one run: no camera ray is left after it.
+            if (kind == RayKind::camera) note_first_hits(scene_, samples, hits_, met, first);
+            kind = RayKind::other;
             done += count;
-            kind = RayKind::other; // the samples are one run, so no camera ray is left
             if (done < kKept || 2 * done < waiting_.size()) continue;
             waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
             done = 0;
@@ -58,7 +60,8 @@ public:
     }
 
 private:
-    void follow(std::size_t count, RayKind kind)
+    // Which of them met something.
+    std::uint64_t follow(std::size_t count, RayKind kind)
     {
         for (std::size_t i = 0; i < count; ++i)
             rays_[i] = branches_[i].ray;
@@ -82,6 +85,7 @@ private:
             found_[of_point_[i]] += added_[i];
         for (std::size_t i = 0; i < count; ++i)
             radiance_[branches_[i].sample] += branches_[i].weight * found_[i];
+        return met;
     }
 
     // What shines there, and the branches that go on. True if lights are to be asked.
@@ -173,9 +177,10 @@ void whitted_radiance(const Scene& scene,
                       std::span<const CameraSample> samples,
                       std::span<Rgb> radiance,
                       RayTally& tally,
-                      const std::stop_token& stop)
+                      const std::stop_token& stop,
+                      FirstHits first)
 {
-    TreeRun(scene, max_depth, radiance, tally, stop).run(samples);
+    TreeRun(scene, max_depth, radiance, tally, stop).run(samples, first);
 }
 
 } // namespace renderer

@@ -7,7 +7,7 @@
 // Cost    at most 2^max_depth rays a sample, each with a shadow ray a light.
 #pragma once
 
-#include "renderer/integrators/radiance.h"
+#include "renderer/integrators/first_hits.h"
 
 #include <cstdint>
 #include <span>
@@ -24,6 +24,7 @@ void whitted_radiance(const Scene& scene,
                       std::span<const CameraSample> samples,
                       std::span<Rgb> radiance,
                       RayTally& tally,
-                      const std::stop_token& stop);
+                      const std::stop_token& stop,
+                      FirstHits first = {});
 
 } // namespace renderer

@@ -125,6 +125,7 @@ public:
             shading();
             lights();
         }
+        layers();
         return std::move(out_);
     }
 
@@ -141,6 +142,16 @@ private:
     void use_if(std::size_t count, const char* name, const std::string& why)
     {
         if (count != 0) use(name, why);
+    }
+
+    void layers()
+    {
+        std::string names;
+        for (const LayerEntry& entry : kLayers)
+            if (settings_.image.layers.has(entry.layer))
+                names.append(names.empty() ? "" : ", ").append(entry.name);
+        if (!names.empty())
+            use("layers", names + ": `image.layers` asks for them; of what camera rays hit first anyway");
     }
 
     void camera()

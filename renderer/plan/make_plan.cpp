@@ -38,6 +38,7 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     plan.world_origin = choose_world_origin(description, meshes);
     plan.joined = choose_joined(description, meshes, plan.world_origin);
     plan.precision = corner_precision(description, meshes);
+    plan.layers = settings.image.layers;
     plan.prediction = predict_cost(description, settings, budget, transport);
     plan.models = explain(scene, meshes, settings, budget, plan.joined, std::move(transport));
     plan.sky = choose_sky(description, meshes, plan.integrator, plan.models);

@@ -103,6 +103,7 @@ struct Plan {
     JoinedObjects joined;
     std::optional<SkyPlan> sky; // where the environment is an atmosphere
     double exposure_ev = 0;     // of a picture
+    LayerSet layers{};          // to keep beside it
     std::string precision;      // of the meshes' corners: "float", "double" or "mixed"
     ModelReport models;
     Prediction prediction;
