@@ -3,6 +3,7 @@
 #include "renderer/plan/joined_objects.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <string>
 #include <tuple>
@@ -12,9 +13,11 @@ namespace renderer {
 
 namespace {
 
-// Sums, mean, 8 bit; of the encoder the filtered rows, the deflated ones in a buffer that doubles, the file and
-// its copy.
-constexpr std::uint64_t kFilmBytesPerPixel = 3 * 8 + 3 * 4 + 3 + (3 + 9 + 3 + 3);
+// Sums and mean; the PNG and its copy; what is kept of both, in one piece, with what is packed of the mean.
+constexpr std::uint64_t kFilmBytesPerPixel = 3 * 8 + 3 * 4 + 3 + 3 + (3 + 12 + 12);
+// Sums and mean of a layer, and what is packed of it: see film/layer_sums.h.
+constexpr std::array<std::uint64_t, kLayers.size()> kLayerBytesPerPixel{
+    16 + 2 * 4, 24 + 2 * 12, 24 + 2 * 12, 2 * 4};
 constexpr std::uint64_t kMeshBytesPerVertex = 12 + 12 + 8;
 constexpr std::uint64_t kMeshBytesPerTriangle = 12 + 2; // indices, material
 // 52 to 57 in meshes of many kinds, 65 where triangles are strewn points.
@@ -27,6 +30,30 @@ constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle 
 // Three corners of their own, indices, and where it came from; residuals.
 constexpr std::uint64_t kJoinedBytesPerTriangle =
     3 * 12 + 12 + 32 + 3 * kResidualBytesPerVertex + kResidualBytesPerTriangle;
+
+std::uint64_t layer_bytes_per_pixel(LayerSet layers)
+{
+    std::uint64_t bytes = 0;
+    for (const LayerEntry& entry : kLayers)
+        if (layers.has(entry.layer)) bytes += kLayerBytesPerPixel[static_cast<std::size_t>(entry.layer)];
+    return bytes;
+}
+
+// Of what shines: itself, where it is found again, its two nodes of the tree of lights, and what that is built from.
+constexpr std::uint64_t kEmitterBytes = 176 + 40 + 2 * 104 + 92;
+
+std::uint64_t
+emitters_of(const ObjectDescription& object, const SceneDescription& scene, std::span<const MeshFacts> meshes)
+{
+    const std::uint64_t triangles = triangles_of(object.shape, meshes);
+    if (object.material && *object.material < scene.materials.size()) {
+        const Material& material = scene.materials[*object.material].material;
+        return std::holds_alternative<EmitterMaterial>(material) ? std::max<std::uint64_t>(triangles, 1) : 0;
+    }
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    if (mesh == nullptr || mesh->mesh >= meshes.size()) return 0;
+    return std::min(meshes[mesh->mesh].shining_triangles, triangles);
+}
 
 // Parts that name the same triangles share a tree; one that names all has the mesh's own.
 std::uint64_t triangles_of_parts(const SceneDescription& scene, std::span<const MeshFacts> meshes)
@@ -107,10 +134,12 @@ Budget predict(const SceneDescription& scene,
     const ImageSettings& image = settings.image;
     b.pixels = image.region ? std::uint64_t{image.region->width} * image.region->height
                             : std::uint64_t{image.width_px} * image.height_px;
-    b.film_bytes = b.pixels * kFilmBytesPerPixel + kMergeBytes;
+    b.film_bytes = b.pixels * (kFilmBytesPerPixel + layer_bytes_per_pixel(image.layers)) + kMergeBytes;
     b.mesh_bytes = scene.objects.size() * kBytesPerObject + tree_bytes(triangles_of_parts(scene, meshes));
     const std::uint64_t joined = most_joined_triangles(scene, meshes);
     b.mesh_bytes += tree_bytes(joined) + joined * kJoinedBytesPerTriangle;
+    for (const ObjectDescription& object : scene.objects)
+        b.mesh_bytes += emitters_of(object, scene, meshes) * kEmitterBytes;
     b.building_bytes = std::max(scene.objects.size() * kInstanceBuildingBytes, tree_building_bytes(joined));
     for (const MeshFacts& facts : meshes)
         add_mesh(b, facts);
@@ -130,6 +159,12 @@ Budget predict(const SceneDescription& scene,
     return b;
 }
 
+// Trees are built before there is a film.
+std::uint64_t memory_bytes(const Budget& budget)
+{
+    return std::max(budget.film_bytes, budget.building_bytes) + budget.mesh_bytes + budget.texture_bytes;
+}
+
 void check_budget(const Budget& budget, const Limits& limits, FaultList& faults)
 {
     if (budget.pixels > limits.image_pixels)
@@ -146,10 +181,9 @@ void check_budget(const Budget& budget, const Limits& limits, FaultList& faults)
                             "triangles to test every ray against without a tree",
                             "listed_triangles",
                             limits.listed_triangles)});
-    // Trees are built before there is a film.
     const bool film_is_most = budget.film_bytes >= budget.building_bytes;
     const std::uint64_t transient = film_is_most ? budget.film_bytes : budget.building_bytes;
-    const std::uint64_t memory = transient + budget.mesh_bytes + budget.texture_bytes;
+    const std::uint64_t memory = memory_bytes(budget);
     if (memory > limits.render_memory_bytes)
         faults.add({film_is_most && budget.film_bytes > budget.mesh_bytes ? "/image" : "/scene/objects",
                     "over_limit",

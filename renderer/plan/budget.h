@@ -30,10 +30,12 @@ struct Budget {
     std::uint64_t pixels = 0;           // of the region that is rendered
     std::uint64_t triangles = 0;        // each mesh counted once
     std::uint64_t listed_triangles = 0; // that every ray is tested against, where no tree is asked for
-    std::uint64_t film_bytes = 0;       // sums, results on their way to them, the finished picture, its PNG
-    std::uint64_t mesh_bytes = 0;       // vertices, indices, a BVH for each mesh and each different part
-    std::uint64_t texture_bytes = 0;    // pictures as decoded, and their levels; those of meshes too
-    std::uint64_t building_bytes = 0;   // for the largest of the trees, before there is a film
+    // Sums, results on their way to them, the finished picture and its layers, its PNG, what is kept of all.
+    std::uint64_t film_bytes = 0;
+    // Vertices, indices, a BVH for each mesh and each different part, what shines of them.
+    std::uint64_t mesh_bytes = 0;
+    std::uint64_t texture_bytes = 0;  // pictures as decoded, and their levels; those of meshes too
+    std::uint64_t building_bytes = 0; // for the largest of the trees, before there is a film
 };
 
 Budget predict(const SceneDescription& scene,
@@ -46,6 +48,9 @@ void add_mesh(Budget& budget, const MeshFacts& mesh);
 
 // One picture of the scene's, with its levels.
 void add_image(Budget& budget, const ImageFacts& image);
+
+// What is held at once, at most.
+std::uint64_t memory_bytes(const Budget& budget);
 
 // One fault for each limit that the budget passes, with the number and the limit.
 void check_budget(const Budget& budget, const Limits& limits, FaultList& faults);

@@ -55,7 +55,7 @@ Prediction predict_cost(const SceneDescription& scene,
         quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);
     p.camera_rays = budget.pixels * samples;
     p.rays = static_cast<double>(p.camera_rays) * rays_a_sample(scene, transport);
-    p.memory_bytes = std::max(budget.film_bytes, budget.building_bytes) + budget.mesh_bytes;
+    p.memory_bytes = memory_bytes(budget);
     const std::uint32_t asked = settings.acceleration.threads;
     p.threads = asked != 0 ? asked : std::max(1u, std::thread::hardware_concurrency());
     p.seconds = p.rays * kSecondsARay / p.threads;

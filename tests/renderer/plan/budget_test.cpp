@@ -1,5 +1,8 @@
 #include "renderer/accel/mesh_bvh.h"
+#include "renderer/film/layer_sums.h"
 #include "renderer/plan/budget.h"
+#include "renderer/plan/predict_cost.h"
+#include "renderer/scene/scene_lights.h"
 #include "tests/renderer/accel/random_scenes.h"
 
 #include <gmock/gmock.h>
@@ -161,4 +164,90 @@ TEST(Budget, KnowsWithinATenthWhatTreesHold)
         EXPECT_GT(ratio, 0.9);
         EXPECT_LT(ratio, 1.1);
     }
+}
+
+TEST(Budget, CountsTheLayersThatAreAskedFor)
+{
+    RenderSettings settings;
+    settings.image.width_px = settings.image.height_px = 100;
+    const std::uint64_t without = predict(scene_of({}), {}, settings).film_bytes;
+    for (const renderer::LayerEntry& entry : renderer::kLayers) {
+        settings.image.layers = {};
+        settings.image.layers.add(entry.layer);
+        EXPECT_EQ(predict(scene_of({}), {}, settings).film_bytes - without,
+                  100 * 100 *
+                      (renderer::layer_sum_bytes(settings.image.layers) +
+                       2 * renderer::layer_image_bytes(settings.image.layers)))
+            << entry.name;
+    }
+}
+
+TEST(Budget, CountsWhatShinesOfMeshesAndShapes)
+{
+    MeshFacts lamp = nested();
+    lamp.shining_triangles = 1000;
+    const auto bytes = [&](const SceneDescription& scene) {
+        return predict(scene, std::vector{lamp}, {}).mesh_bytes;
+    };
+    const std::uint64_t dark = mesh_bytes({""}), one = bytes(scene_of({""})) - dark;
+    EXPECT_GT(one, 1000u * 400);
+    EXPECT_EQ(bytes(scene_of({"", ""})) - mesh_bytes({"", ""}), 2 * one) << "each instance has its own";
+    SceneDescription scene = scene_of({""});
+    scene.materials = {{"lamp", renderer::EmitterMaterial{}}, {"clay", renderer::DiffuseMaterial{}}};
+    scene.objects[0].material = 1;
+    EXPECT_EQ(bytes(scene), dark);
+    scene.objects[0].material = 0;
+    EXPECT_EQ(bytes(scene) - dark, one * kTriangles / 1000) << "all of the mesh";
+    scene.objects[0].shape = renderer::SphereShape{1};
+    const std::uint64_t shining = bytes(scene);
+    scene.objects[0].material = 1;
+    EXPECT_EQ(shining - bytes(scene), one / 1000);
+}
+
+// What the estimate of one stands for, held against the sizes of what is made of many.
+TEST(Budget, KnowsWithinATenthWhatLightsHold)
+{
+    constexpr std::uint32_t kCount = 10000;
+    renderer::SceneLights lights;
+    const renderer::Mesh mesh = renderer::random_scenes::grid(100, 1);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        const renderer::Triangle& t = mesh.triangles[i];
+        lights.emitters.push_back(
+            renderer::triangle_emitter(
+                mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]), {1, 1, 1}, false)
+                .value());
+        lights.emitter_of[i] = i;
+    }
+    lights.pick_by_tree();
+    // A node of the map: its link, key and value, and what the allocator adds; a bucket.
+    constexpr std::uint64_t kFoundAgain = 8 + 16 + 8 + 8;
+    const std::uint64_t held = kCount * (sizeof(renderer::Emitter) + kFoundAgain) + lights.tree.size_bytes() +
+                               kCount * (sizeof(renderer::LightBounds) + 4); // while the tree is built
+    SceneDescription scene = scene_of({""});
+    MeshFacts facts = nested();
+    const std::uint64_t dark = predict(scene, std::vector{facts}, {}).mesh_bytes;
+    facts.shining_triangles = kCount;
+    const double ratio = static_cast<double>(predict(scene, std::vector{facts}, {}).mesh_bytes - dark) /
+                         static_cast<double>(held);
+    EXPECT_GT(ratio, 0.9);
+    EXPECT_LT(ratio, 1.1);
+}
+
+TEST(Budget, IsWhatThePlanPredictsPicturesAndAll)
+{
+    const renderer::ImageFacts picture{4096, 2048, 4096 * 2048 * 12, false, true};
+    const SceneDescription scene = scene_of({""});
+    const std::vector meshes{nested()};
+    const Budget with = predict(scene, meshes, {}, std::vector{picture}),
+                 without = predict(scene, meshes, {});
+    EXPECT_GE(memory_bytes(with), memory_bytes(without) + picture.bytes);
+    EXPECT_EQ(renderer::predict_cost(scene, {}, with, {}).memory_bytes, memory_bytes(with));
+    Limits limits;
+    limits.render_memory_bytes = memory_bytes(with);
+    FaultList faults;
+    check_budget(with, limits, faults);
+    EXPECT_TRUE(faults.empty());
+    --limits.render_memory_bytes;
+    check_budget(with, limits, faults);
+    EXPECT_FALSE(faults.empty());
 }
