@@ -3,6 +3,7 @@
 #include "api/json/json.h"
 #include "api/words/limit_words.h"
 #include "api/words/word_table.h"
+#include "renderer/description/layers.h"
 
 #include <algorithm>
 
@@ -40,11 +41,24 @@ Json models_json()
             {"transports", names_of(words_for<renderer::TransportType>())}};
 }
 
+// Of each layer, the formats that hold it.
+Json layers_json()
+{
+    Json layers = Json::object();
+    for (const renderer::LayerEntry& entry : renderer::kLayers) {
+        Json& formats = layers[std::string(entry.name)] = Json::array();
+        for (const renderer::PictureFormatEntry& format : renderer::kPictureFormats)
+            if (renderer::holds(format.format, entry.layer)) formats.push_back(format.media_type);
+    }
+    return layers;
+}
+
 Json formats_json()
 {
     return {{"meshes", names_of(mesh_format_words())},
             {"textures", names_of(texture_format_words())},
             {"images", names_of(image_format_words())},
+            {"layers", layers_json()},
             {"tones", names_of(words_for<renderer::Tone>())}};
 }
 

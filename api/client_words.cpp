@@ -4,6 +4,7 @@
 #include "api/json/parse_json.h"
 #include "renderer/description/limits.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -113,6 +114,12 @@ std::string add_to_job(std::string_view json, const JobAdditions& additions)
     if (additions.priority) (*object)["priority"] = *additions.priority;
     for (const auto& [name, value] : additions.labels)
         (*object)["labels"][name] = value;
+    for (const renderer::LayerEntry& entry : renderer::kLayers) {
+        if (!additions.layers.has(entry.layer)) continue;
+        Json& names = (*object)["image"]["layers"];
+        if (std::find(names.begin(), names.end(), std::string(entry.name)) == names.end())
+            names.push_back(entry.name);
+    }
     return text_of(*object);
 }
 

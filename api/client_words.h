@@ -26,6 +26,7 @@ struct JobAdditions {
     std::map<std::string, std::string> files; // name -> digest
     std::optional<int> priority;
     std::map<std::string, std::string> labels;
+    renderer::LayerSet layers{}; // beside those that it asks for
 };
 // The job text with them; all else stays as it was. `json` is a job that read_job accepts.
 std::string add_to_job(std::string_view json, const JobAdditions& additions);

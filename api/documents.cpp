@@ -74,6 +74,7 @@ std::string write_discovery()
                       {"job", "/v1/jobs/{id}"},
                       {"cancel", "/v1/jobs/{id}/cancel"},
                       {"image", "/v1/jobs/{id}/image"},
+                      {"layer", "/v1/jobs/{id}/layers/{name}"},
                       {"report", "/v1/jobs/{id}/report"},
                       {"scene", "/v1/jobs/{id}/scene"}}}});
 }

@@ -13,14 +13,18 @@ namespace {
 constexpr std::array kStateNames{
     "queued", "preparing", "running", "canceling", "succeeded", "failed", "canceled", "expired"};
 
-Json links_of(const std::string& id)
+Json links_of(const JobView& view)
 {
-    const std::string self = "/v1/jobs/" + id;
-    return {{"self", self},
-            {"image", self + "/image"},
-            {"report", self + "/report"},
-            {"scene", self + "/scene"},
-            {"cancel", self + "/cancel"}};
+    const std::string self = "/v1/jobs/" + view.id;
+    Json links{{"self", self},
+               {"image", self + "/image"},
+               {"report", self + "/report"},
+               {"scene", self + "/scene"},
+               {"cancel", self + "/cancel"}};
+    for (const renderer::LayerEntry& entry : renderer::kLayers)
+        if (view.layers.has(entry.layer))
+            links["layers"][std::string(entry.name)] = self + "/layers/" + std::string(entry.name);
+    return links;
 }
 
 Json job_json(const JobView& view)
@@ -35,7 +39,7 @@ Json job_json(const JobView& view)
               {"priority", view.priority},
               {"labels", view.labels},
               {"attempts", view.attempts},
-              {"links", links_of(view.id)}};
+              {"links", links_of(view)}};
     if (view.started_ms) json["started"] = rfc3339(*view.started_ms);
     if (view.finished_ms) json["finished"] = rfc3339(*view.finished_ms);
     if (view.queue_position) json["queue_position"] = *view.queue_position;

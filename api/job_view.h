@@ -2,6 +2,7 @@
 #pragma once
 
 #include "api/problem.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/report.h"
 #include "renderer/description/settings.h"
 
@@ -42,10 +43,12 @@ struct JobView {
     int priority = 50;
     std::map<std::string, std::string> labels;
     std::uint32_t attempts = 0;
+    renderer::LayerSet layers;           // that it was asked for
     std::optional<ProblemDetails> error; // when failed
 };
 
-// The job object: fields above, and `links` {self, image, report, scene, cancel}.
+// The job object: fields above, and `links` {self, image, report, scene, cancel}, where layers were asked for
+// also layers {name: link}.
 std::string write_job_view(const JobView& view);
 // A failed job's list of faults is left out: write_job_view has it.
 std::string write_job_list(const std::vector<JobView>& views, const std::string& next_cursor);

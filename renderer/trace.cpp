@@ -59,15 +59,21 @@ public:
                 out_.sums.sums[pixels_[i]] += found[i];
             else
                 ++out_.tally.non_finite_samples;
-            if (first_.empty() || !first_[i].is_there) continue;
-            out_.sums.layers.add(pixels_[i], first_[i].distance_m, first_[i].normal, first_[i].albedo);
         }
+        if (!first_.empty() && !stopped_) add_layers();
         count_ = 0;
     }
 
     bool stopped() const { return stopped_; } // what there is may be incomplete
 
 private:
+    void add_layers()
+    {
+        for (std::size_t i = 0; i < count_; ++i)
+            if (const FirstHit& hit = first_[i]; hit.is_there)
+                out_.sums.layers.add(pixels_[i], hit.distance_m, hit.normal, hit.albedo);
+    }
+
     void radiance_of(std::span<Rgb> found)
     {
         const std::span<const CameraSample> samples(samples_, count_);

@@ -9,7 +9,7 @@
 // A visitor has: number, integer, boolean, word, point, direction, color, textured_number,
 // textured_color, coefficients, extents, object, group, kinds, list, table, unbuilt, needs, exclude, only_when, and the few
 // below that stand for one place alone: aim, sun_angles, geometry, image_of, material_of, metal_of, placement,
-// files, labels, fail_on, preset.
+// files, labels, fail_on, layers, preset.
 #pragma once
 
 #include "api/fields/atmosphere_fields.h"
@@ -122,7 +122,7 @@ void fields(V& v, X& image)
              kExposure,
              "radiance is multiplied by 2^exposure_ev; left out: 0, under an atmosphere by its sun");
     v.word("tone", image.tone, "from radiance to display");
-    v.unbuilt({"layers"}, "available: the picture alone");
+    v.layers(image.layers);
 }
 
 template <typename V, Sees<renderer::QualitySettings> X>

@@ -10,6 +10,7 @@
 #include "api/read/fault_list.h"
 #include "api/words/word_table.h"
 #include "renderer/description/atmosphere.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/texture.h"
 
 #include <array>
@@ -155,6 +156,7 @@ public:
     void files(std::map<std::string, std::string>& files);
     void labels(std::map<std::string, std::string>& labels);
     void fail_on(std::vector<std::string>& words);
+    void layers(renderer::LayerSet& layers);
 
     // The whole text is one thing whose `type` says what it is.
     template <typename V>

@@ -58,6 +58,19 @@ void ReadFields::fail_on(std::vector<std::string>& words)
     }
 }
 
+void ReadFields::layers(renderer::LayerSet& layers)
+{
+    const Json* node = array_of("layers", nullptr);
+    for (std::size_t i = 0; node && i < node->size(); ++i) {
+        const std::string* text = text_at((*node)[i], at("layers", i), 1, kLongestName);
+        const Word* word = text ? word_at(at("layers", i), *text, layer_words()) : nullptr;
+        if (!word) continue;
+        const auto layer = static_cast<renderer::Layer>(word->value);
+        if (layers.has(layer)) fault(at("layers", i), "conflict", in_quotes(*text) + " stands twice");
+        layers.add(layer);
+    }
+}
+
 namespace {
 
 void check_not_empty(const renderer::SceneDescription& scene, FaultList& faults)
@@ -126,12 +139,14 @@ void settle_quality(renderer::QualitySettings& quality, const renderer::Limits& 
 }
 
 // A meter makes no picture: its pixels are the replicates of one measurement.
-void settle_meter(JobRequest& job)
+void settle_meter(JobRequest& job, FaultList& faults)
 {
     constexpr std::uint32_t kSide = 4;
     if (!job.scene.camera || job.scene.camera->projection != renderer::Projection::meter) return;
     job.settings.image.width_px = job.settings.image.height_px = kSide;
     job.settings.image.region.reset();
+    if (!job.settings.image.layers.empty())
+        faults.add("/image/layers", "conflict", "a meter makes no picture that layers could lie beside");
 }
 
 // "unsupported" where the request is right and the build lacks what it asks for.
@@ -157,7 +172,7 @@ std::variant<JobRequest, ProblemDetails> read_job(std::string_view json, const R
 
     if (std::get<Json>(parsed).is_object()) check_not_empty(job.scene, state.faults);
     check_spot_lights(job.scene, state.faults);
-    settle_meter(job);
+    settle_meter(job, state.faults);
     check_air(job.scene, state.faults);
     check_image(job.settings.image, context.limits, state.faults);
     settle_quality(job.settings.quality, context.limits);

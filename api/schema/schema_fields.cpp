@@ -185,6 +185,20 @@ void SchemaFields::fail_on(const std::vector<std::string>&)
              "what makes the job fail instead of being told in the report"));
 }
 
+void SchemaFields::layers(renderer::LayerSet)
+{
+    std::string doc =
+        "what is kept beside the picture, of the first thing that each camera ray hits, glass and "
+        "mirrors themselves";
+    for (const renderer::LayerEntry& entry : renderer::kLayers)
+        doc.append("; ").append(entry.name).append(": ").append(entry.what);
+    Json member =
+        told({{"type", "array"}, {"uniqueItems", true}, {"items", {{"enum", names_of(layer_words())}}}},
+             doc.c_str());
+    member["default"] = Json::array();
+    put("layers", std::move(member));
+}
+
 Json SchemaFields::schema_of(const renderer::ObjectDescription& object)
 {
     Json any = Json::array();

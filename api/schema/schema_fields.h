@@ -9,6 +9,7 @@
 #include "api/job_request.h"
 #include "api/json/json.h"
 #include "api/words/word_table.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/texture.h"
 
 #include <concepts>
@@ -142,6 +143,7 @@ public:
     void files(const std::map<std::string, std::string>& files);
     void labels(const std::map<std::string, std::string>& labels);
     void fail_on(const std::vector<std::string>& words);
+    void layers(renderer::LayerSet layers);
 
     template <typename T>
     static Json schema_of(const T& value)

@@ -1,6 +1,7 @@
 #include "api/words/word_table.h"
 
 #include "renderer/description/image_formats.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/mesh_formats.h"
 #include "renderer/description/picture_formats.h"
 
@@ -207,6 +208,18 @@ WordTable words_for<MeterQuantity>()
 WordTable fail_on_words()
 {
     static constexpr std::array words{Word{"non_finite", 0}, Word{"target_missed"}};
+    return words;
+}
+
+WordTable layer_words()
+{
+    static constexpr auto words = [] {
+        std::array<Word, renderer::kLayers.size() + 1> all{};
+        for (std::size_t i = 0; i < renderer::kLayers.size(); ++i)
+            all[i] = enumerator(renderer::kLayers[i].name, renderer::kLayers[i].layer);
+        all.back() = Word{"error"};
+        return all;
+    }();
     return words;
 }
 

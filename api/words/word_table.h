@@ -105,6 +105,9 @@ WordTable words_for<renderer::BvhLevels>();
 // Words without a value of their own: the one that is built is what happens.
 WordTable fail_on_words();
 
+// Of renderer::Layer.
+WordTable layer_words();
+
 // What importer and encoder speak; held against them by tests.
 WordTable mesh_format_words();
 WordTable texture_format_words();

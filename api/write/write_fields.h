@@ -8,6 +8,7 @@
 #include "api/job_request.h"
 #include "api/json/json.h"
 #include "api/words/word_table.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/texture.h"
 
 #include <concepts>
@@ -153,6 +154,12 @@ public:
     void files(const std::map<std::string, std::string>& files) { out_["files"] = files; }
     void labels(const std::map<std::string, std::string>& labels) { out_["labels"] = labels; }
     void fail_on(const std::vector<std::string>& words) { out_["fail_on"] = words; }
+    void layers(renderer::LayerSet layers)
+    {
+        Json& names = out_["layers"] = Json::array();
+        for (const renderer::LayerEntry& entry : renderer::kLayers)
+            if (layers.has(entry.layer)) names.push_back(entry.name);
+    }
 
 private:
     template <typename T>

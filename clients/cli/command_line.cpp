@@ -7,6 +7,7 @@
 #include "clients/cli/remote_commands.h"
 #include "clients/cli/sky_options.h"
 #include "clients/cli/user_error.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/mesh_formats.h"
 #include "renderer/description/picture_formats.h"
 
@@ -87,6 +88,20 @@ void add_bits(CLI::App& command, std::optional<std::uint32_t>& bits)
         ->check(CLI::IsMember({8u, 16u}));
 }
 
+void add_layers(CLI::App& command, std::vector<std::string>& layers)
+{
+    std::string names;
+    for (const renderer::LayerEntry& entry : renderer::kLayers)
+        names.append(names.empty() ? "" : ", ").append(entry.name);
+    command
+        .add_option("--layer",
+                    layers,
+                    "NAME=FILE, what is kept beside the picture: " + names +
+                        "; .exr, .pfm, and .png of normal and albedo; may be repeated")
+        ->take_all()
+        ->allow_extra_args(false);
+}
+
 void add_service_options(CLI::App& command, ServiceOptions& service)
 {
     command.add_option("--url", service.url, "the service")->envname("HELIOGRAPH_URL")->capture_default_str();
@@ -109,6 +124,7 @@ void add_render(CommandLine& words)
     command->add_option("scene", options.scene, scene_help())->required();
     command->add_option("-o,--output", options.output, output_help())->required();
     add_bits(*command, options.bits);
+    add_layers(*command, options.layers);
     command->add_option("--report", options.report, "write the report (JSON) to this file");
     auto* samples =
         command->add_option("--samples", options.samples, "samples a pixel, instead of the scene's quality")
@@ -209,8 +225,9 @@ void add_making(CommandLine& words)
         return fetch_command(words.service, words.fetch, stop);
     });
     fetch->add_option("id", words.fetch.id, "job")->required();
-    fetch->add_option("-o,--output", words.fetch.output, output_help())->required();
+    fetch->add_option("-o,--output", words.fetch.output, output_help());
     add_bits(*fetch, words.fetch.bits);
+    add_layers(*fetch, words.fetch.layers);
     add_service_options(*fetch, words.service);
 
     CLI::App* run = add_command(
@@ -220,6 +237,7 @@ void add_making(CommandLine& words)
     add_scene_options(*run, words.run.submit);
     run->add_option("-o,--output", words.run.output, output_help())->required();
     add_bits(*run, words.run.bits);
+    add_layers(*run, words.run.layers);
     run->add_option("--timeout", words.run.timeout_s, "seconds (default: for ever)");
     add_service_options(*run, words.service);
 }

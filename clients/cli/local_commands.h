@@ -10,6 +10,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 namespace clients {
 
@@ -23,6 +24,7 @@ struct RenderOptions {
     std::optional<double> time_s;
     std::optional<renderer::BvhSplit> split;
     std::optional<std::uint32_t> bits; // a channel, of a PNG
+    std::vector<std::string> layers;   // NAME=FILE, see layer_files.h; beside those that the scene asks for
     bool quiet = false;
 };
 ExitCode render_command(const RenderOptions& options, const std::stop_token& stop);

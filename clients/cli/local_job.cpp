@@ -78,8 +78,8 @@ LocalJob load_local_job(const JobSource& source, api::JobRequest request)
 
 renderer::Plan plan_of(const LocalJob& job)
 {
-    return std::get<renderer::Plan>(
-        renderer::make_plan(job.assumed, job.facts, job.request.settings, renderer::Limits::none()));
+    return std::get<renderer::Plan>(renderer::make_plan(
+        job.assumed, job.facts, job.request.settings, renderer::Limits::none(), job.image_facts));
 }
 
 std::string render_key_of(const api::JobRequest& request)

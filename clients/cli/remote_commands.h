@@ -4,6 +4,7 @@
 #pragma once
 
 #include "clients/cli/exit_code.h"
+#include "renderer/description/layers.h"
 
 #include <cstdint>
 #include <optional>
@@ -25,6 +26,7 @@ struct SubmitOptions {
     std::optional<int> priority;
     std::vector<std::string> labels; // "name=value"
     bool force = false;              // no result of an equal job is reused
+    renderer::LayerSet layers{};     // to keep beside those that the scene asks for
 };
 ExitCode submit_command(const ServiceOptions& service, const SubmitOptions& options, std::stop_token stop);
 
@@ -36,8 +38,9 @@ ExitCode wait_command(const ServiceOptions& service, const WaitOptions& options,
 
 struct FetchOptions {
     std::string id;
-    std::string output;                // its extension tells the format; "-": PNG
+    std::string output;                // its extension tells the format; "-": PNG; empty: layers alone
     std::optional<std::uint32_t> bits; // a channel, of a PNG
+    std::vector<std::string> layers;   // NAME=FILE, see layer_files.h
 };
 ExitCode fetch_command(const ServiceOptions& service, const FetchOptions& options, std::stop_token stop);
 
@@ -46,6 +49,7 @@ struct RunOptions {
     SubmitOptions submit;
     std::string output;
     std::optional<std::uint32_t> bits;
+    std::vector<std::string> layers; // as of fetch; the job is asked for them
     std::optional<double> timeout_s;
 };
 ExitCode run_command(const ServiceOptions& service, const RunOptions& options, const std::stop_token& stop);

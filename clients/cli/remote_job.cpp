@@ -100,7 +100,8 @@ api::JobView submit_job(HttpClient& client, const SubmitOptions& options, bool q
     if (const auto* faults = std::get_if<std::vector<api::Problem>>(&found))
         refuse_faults(source.name, *faults);
 
-    api::JobAdditions additions{.files = {}, .priority = options.priority, .labels = labels};
+    api::JobAdditions additions{
+        .files = {}, .priority = options.priority, .labels = labels, .layers = options.layers};
     for (const JobFile& file : std::get<std::vector<JobFile>>(found)) {
         additions.files[file.name] = file.digest;
         if (upload(client, file) && !quiet) std::fprintf(stderr, "note: uploaded %s\n", file.path.c_str());
@@ -164,12 +165,16 @@ ExitCode tell_end(const api::JobView& job)
     return job.state == api::JobState::expired ? ExitCode::not_found : ExitCode::failed;
 }
 
-std::string
-fetch_picture(HttpClient& client, const std::string& id, const renderer::PictureEncoding& encoding)
+namespace {
+
+std::string fetch(HttpClient& client,
+                  const std::string& id,
+                  const std::string& what,
+                  const renderer::PictureEncoding& encoding)
 {
     const std::string query = encoding.bits == 16 ? "?bits=16" : "";
     HttpAnswer answer =
-        client.send({.path = path_of_job(id) + "/image" + query,
+        client.send({.path = path_of_job(id) + what + query,
                      .headers = {{"Accept", std::string(entry_of(encoding.format).media_type)}}});
     if (answer.status == 504)
         throw UserError(ExitCode::timed_out,
@@ -180,6 +185,19 @@ fetch_picture(HttpClient& client, const std::string& id, const renderer::Picture
         throw UserError(ExitCode::unreachable,
                         id + ": the picture was damaged on its way: " + found + " instead of " + told);
     return std::move(answer.body);
+}
+
+} // namespace
+
+std::string
+fetch_picture(HttpClient& client, const std::string& id, const renderer::PictureEncoding& encoding)
+{
+    return fetch(client, id, "/image", encoding);
+}
+
+std::string fetch_layer(HttpClient& client, const std::string& id, const LayerFile& file)
+{
+    return fetch(client, id, "/layers/" + std::string(entry_of(file.layer).name), file.encoding);
 }
 
 } // namespace clients

@@ -5,6 +5,7 @@
 
 #include "api/job_view.h"
 #include "clients/cli/http_client.h"
+#include "clients/cli/layer_files.h"
 #include "clients/cli/remote_commands.h"
 #include "renderer/description/picture_formats.h"
 
@@ -32,5 +33,7 @@ ExitCode tell_end(const api::JobView& job);
 // The picture's bytes, compared with their Repr-Digest.
 std::string
 fetch_picture(HttpClient& client, const std::string& id, const renderer::PictureEncoding& encoding);
+// Likewise those of a layer beside it.
+std::string fetch_layer(HttpClient& client, const std::string& id, const LayerFile& file);
 
 } // namespace clients

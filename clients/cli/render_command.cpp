@@ -1,12 +1,14 @@
 #include "api/job_view.h"
 #include "api/provenance.h"
 #include "clients/cli/files.h"
+#include "clients/cli/layer_files.h"
 #include "clients/cli/local_commands.h"
 #include "clients/cli/local_job.h"
 #include "clients/cli/output_format.h"
 #include "clients/cli/progress_bar.h"
 #include "clients/cli/user_error.h"
 #include "renderer/accel/prepared_mesh.h"
+#include "renderer/film/encode_layer.h"
 #include "renderer/film/encode_picture.h"
 #include "renderer/render.h"
 
@@ -20,7 +22,10 @@ namespace {
 
 // The request under the command's options, read again as a job: so options meet the same checks as a scene
 // does.
-api::JobRequest with_options(api::JobRequest request, const RenderOptions& options, const JobSource& source)
+api::JobRequest with_options(api::JobRequest request,
+                             const RenderOptions& options,
+                             renderer::LayerSet layers,
+                             const JobSource& source)
 {
     renderer::RenderSettings& settings = request.settings;
     if (options.width_px) settings.image.width_px = *options.width_px;
@@ -29,6 +34,7 @@ api::JobRequest with_options(api::JobRequest request, const RenderOptions& optio
         settings.quality.samples = options.samples;
         settings.quality.time_s = options.time_s;
     }
+    settings.image.layers.bits |= layers.bits;
     if (options.seed) settings.seed = *options.seed;
     if (options.threads) settings.acceleration.threads = *options.threads;
     if (options.tile_px) settings.acceleration.tile_px = *options.tile_px;
@@ -85,6 +91,7 @@ renderer::Picture
 picture_of(const renderer::RenderResult& result, const api::JobRequest& request, double exposure_ev)
 {
     renderer::Picture picture{.image = result.film.mean(),
+                              .layers = result.film.layers.mean(result.film.samples),
                               .exposure_ev = exposure_ev,
                               .tone = request.settings.image.tone,
                               .texts = {}};
@@ -92,6 +99,11 @@ picture_of(const renderer::RenderResult& result, const api::JobRequest& request,
          api::provenance_of(request, render_key_of(request), result.report.accuracy.samples))
         picture.texts.push_back({keyword, text});
     return picture;
+}
+
+void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes)
+{
+    write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 // Before the render: after it, the picture would be lost.
@@ -112,8 +124,12 @@ ExitCode render_command(const RenderOptions& options, const std::stop_token& sto
     const renderer::PictureEncoding encoding = encoding_of(options.output, options.bits);
     check_writable(options.output);
     if (!options.report.empty()) check_writable(options.report);
+    const std::vector<LayerFile> layers = read_layer_files(options.layers, options.bits);
+    for (const LayerFile& file : layers)
+        check_writable(file.path);
     const JobSource source = read_job_source(options.scene);
-    LocalJob job = load_local_job(source, with_options(read_request(source), options, source));
+    LocalJob job =
+        load_local_job(source, with_options(read_request(source), options, layers_of(layers), source));
     check_size(options.output, encoding.format, job.request);
     if (!options.quiet)
         for (const std::string& note : job.notes)
@@ -123,8 +139,11 @@ ExitCode render_command(const RenderOptions& options, const std::stop_token& sto
     renderer::RenderResult result = render_job(job, plan, options.quiet, stop);
     result.report.notes = job.notes;
     const renderer::Picture picture = picture_of(result, job.request, plan.exposure_ev);
-    const std::vector<std::uint8_t> bytes = renderer::encode_picture(picture, encoding);
-    write_file(options.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_bytes(options.output, renderer::encode_picture(picture, encoding));
+    for (const LayerFile& file : layers)
+        for (const renderer::LayerImage& layer : picture.layers)
+            if (layer.layer == file.layer)
+                write_bytes(file.path, renderer::encode_layer(picture, layer, file.encoding));
     if (!options.report.empty())
         write_file(options.report,
                    api::write_report(

@@ -53,6 +53,7 @@ void LayerSums::add(std::size_t pixel, double distance_m, Vec3f normal, Rgb albe
 
 void LayerSums::add(const LayerSums& part, std::size_t from, std::size_t to, std::size_t count)
 {
+    if (asked_.empty()) return;
     for (std::size_t i = 0; i < count; ++i) {
         if (!depth_.empty()) {
             depth_[to + i].metres += part.depth_[from + i].metres;

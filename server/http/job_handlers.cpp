@@ -4,6 +4,7 @@
 #include "server/http/negotiation.h"
 #include "server/http/printable.h"
 #include "server/http/submit_words.h"
+#include "server/http/wanted_encoding.h"
 
 #include <algorithm>
 #include <chrono>
@@ -31,31 +32,12 @@ std::string path_of(const std::string& id)
     return "/v1/jobs/" + id;
 }
 
-api::ProblemDetails not_acceptable()
+api::ProblemDetails unknown_layer(const std::string& name)
 {
     std::string all;
-    for (const renderer::PictureFormatEntry& entry : renderer::kPictureFormats)
-        all += (all.empty() ? "" : ", ") + std::string(entry.media_type);
-    return problem(406, "not_acceptable", "the picture is to be had as " + all + ": Accept: image/png, say");
-}
-
-constexpr renderer::PictureEncoding kPng16{renderer::PictureFormat::png, 16};
-
-// Of /image: what Accept likes best, or with ?bits=16 a PNG of that depth.
-std::variant<renderer::PictureEncoding, api::ProblemDetails> wanted_encoding(const Exchange& exchange)
-{
-    const Acceptance accept = read_accept(exchange.header("Accept"));
-    const std::string bits = exchange.query("bits").value_or("8");
-    if (bits != "8" && bits != "16")
-        return query_problem("out_of_range",
-                             "bits=" + printable(bits) + ": a PNG has 8 or 16 bits a channel");
-    if (bits == "16") {
-        if (accept.takes(renderer::PictureFormat::png)) return kPng16;
-        return problem(406, "not_acceptable", "?bits=16 is for PNG: Accept: image/png, or leave it out");
-    }
-    const auto best = accept.best();
-    if (!best) return not_acceptable();
-    return renderer::PictureEncoding{*best, 8};
+    for (const renderer::LayerEntry& entry : renderer::kLayers)
+        all += (all.empty() ? "" : ", ") + std::string(entry.name);
+    return problem(404, "not_found", "there is no layer \"" + printable(name) + "\": layers are " + all);
 }
 
 // queue;dur=3, render;dur=120: in milliseconds, as browsers show them.
@@ -93,6 +75,7 @@ void JobHandlers::add_routes(Router& router)
     route("DELETE", "/v1/jobs/{id}", &JobHandlers::remove);
     route("POST", "/v1/jobs/{id}/cancel", &JobHandlers::cancel);
     route("GET", "/v1/jobs/{id}/image", &JobHandlers::image, {"bits"});
+    route("GET", "/v1/jobs/{id}/layers/{name}", &JobHandlers::layer, {"bits"});
     route("GET", "/v1/jobs/{id}/report", &JobHandlers::report);
     route("GET", "/v1/jobs/{id}/scene", &JobHandlers::scene);
 }
@@ -249,15 +232,44 @@ void JobHandlers::reply_image(Exchange& exchange,
                               const renderer::PictureEncoding& encoding)
 {
     auto found = jobs_.image(id, encoding);
-    const auto view = jobs_.get(id);
     if (auto* refusal = std::get_if<api::ProblemDetails>(&found))
         return reply_problem(exchange, std::move(*refusal));
-    const auto& picture = std::get<EncodedPicture>(found);
-    const renderer::PictureFormatEntry& entry = entry_of(encoding.format);
+    reply_encoded(exchange, id, id, std::get<EncodedPicture>(found), encoding.format);
+}
+
+void JobHandlers::layer(Exchange& exchange)
+{
+    const std::string &id = exchange.path.at("id"), &name = exchange.path.at("name");
+    const renderer::LayerEntry* const entry = renderer::find_layer(name);
+    if (entry == nullptr) return reply_problem(exchange, unknown_layer(name));
+    auto wanted = wanted_encoding(exchange, entry->layer);
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&wanted))
+        return reply_problem(exchange, std::move(*refusal));
+    const auto encoding = std::get<renderer::PictureEncoding>(wanted);
+    std::optional<Waiters::Place> place;
+    std::uint64_t seconds = 0;
+    if (!enter_wait(exchange, place, seconds)) return;
+    if (place) wait(exchange, id, seconds, {});
+    if (!place && !(place = waiters_.enter())) // it is encoded now
+        return reply_problem(exchange, too_many_waiters(limits_));
+    auto found = jobs_.layer(id, entry->layer, encoding);
+    if (auto* refusal = std::get_if<api::ProblemDetails>(&found))
+        return reply_problem(exchange, std::move(*refusal));
+    reply_encoded(exchange, id, id + "-" + name, std::get<EncodedPicture>(found), encoding.format);
+}
+
+void JobHandlers::reply_encoded(Exchange& exchange,
+                                const std::string& id,
+                                const std::string& name,
+                                const EncodedPicture& picture,
+                                renderer::PictureFormat format)
+{
+    const auto view = jobs_.get(id);
+    const renderer::PictureFormatEntry& entry = entry_of(format);
     httplib::Response& response = exchange.response;
     response.set_header("Cache-Control", "private, immutable");
     response.set_header("Content-Disposition",
-                        std::string("inline; filename=\"") + id + std::string(entry.extension) + '"');
+                        std::string("inline; filename=\"") + name + std::string(entry.extension) + '"');
     response.set_header("Vary", "Accept");
     response.set_header("Link", std::string("<") + path_of(id) + "/report>; rel=\"describedby\"");
     const std::string timing = view ? server_timing(*view) : std::string();

@@ -1,4 +1,4 @@
-// JobHandlers: /v1/jobs: submit, look, wait, list, cancel, forget; picture, report and scene.
+// JobHandlers: /v1/jobs: submit, look, wait, list, cancel, forget; picture, layers, report and scene.
 #pragma once
 
 #include "renderer/description/limits.h"
@@ -34,6 +34,7 @@ private:
     void cancel(Exchange& exchange);
     void remove(Exchange& exchange);
     void image(Exchange& exchange);
+    void layer(Exchange& exchange);
     void report(Exchange& exchange);
     void scene(Exchange& exchange);
 
@@ -43,6 +44,12 @@ private:
     // The place, and how long; a place that cannot be had is answered with 429 and gives false.
     bool enter_wait(Exchange& exchange, std::optional<Waiters::Place>& place, std::uint64_t& seconds);
     void reply_image(Exchange& exchange, const std::string& id, const renderer::PictureEncoding& encoding);
+    // A picture or a layer of the job; `name`: of the file that a browser would save.
+    void reply_encoded(Exchange& exchange,
+                       const std::string& id,
+                       const std::string& name,
+                       const EncodedPicture& picture,
+                       renderer::PictureFormat format);
 
     JobService& jobs_;
     Store& store_;

@@ -117,6 +117,18 @@ std::optional<renderer::PictureFormat> Acceptance::best() const
     return renderer::kPictureFormats[static_cast<std::size_t>(most - quality.begin())].format;
 }
 
+std::optional<renderer::PictureFormat> Acceptance::best_of(renderer::Layer layer) const
+{
+    using renderer::PictureFormat;
+    std::optional<PictureFormat> best;
+    for (const PictureFormat format : {PictureFormat::exr, PictureFormat::pfm, PictureFormat::png}) {
+        if (!holds(format, layer) || !takes(format)) continue;
+        const auto quality_of = [&](PictureFormat f) { return quality[static_cast<std::size_t>(f)]; };
+        if (!best || quality_of(format) > quality_of(*best)) best = format;
+    }
+    return best;
+}
+
 Acceptance read_accept(const std::string& accept)
 {
     Acceptance found;

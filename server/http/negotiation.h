@@ -2,6 +2,7 @@
 // not faults: they are left unheard, as the RFCs say.
 #pragma once
 
+#include "renderer/description/layers.h"
 #include "renderer/description/picture_formats.h"
 
 #include <array>
@@ -23,6 +24,8 @@ struct Acceptance {
     bool takes(renderer::PictureFormat format) const { return quality[static_cast<std::size_t>(format)] > 0; }
     // What suits best, of equals the first of the table; nothing: none of them.
     std::optional<renderer::PictureFormat> best() const;
+    // The same of the formats that hold a layer: of equals the first of OpenEXR, PFM, PNG.
+    std::optional<renderer::PictureFormat> best_of(renderer::Layer layer) const;
 };
 Acceptance read_accept(const std::string& accept);
 

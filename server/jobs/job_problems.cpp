@@ -155,6 +155,21 @@ api::ProblemDetails format_too_small_problem(renderer::PictureFormat format)
                    false);
 }
 
+api::ProblemDetails no_such_layer_problem(const JobId& id, renderer::Layer layer, renderer::LayerSet asked)
+{
+    std::string names;
+    for (const renderer::LayerEntry& entry : renderer::kLayers)
+        if (asked.has(entry.layer)) names.append(names.empty() ? "" : ", ").append(entry.name);
+    const std::string name(entry_of(layer).name);
+    return problem(404,
+                   "not_found",
+                   "job " + id + " was not asked for the layer " + name + " (" +
+                       (names.empty() ? "for none" : "for " + names) +
+                       "): submit the scene again with it in image.layers: {\"image\": {\"layers\": [\"" +
+                       name + "\"]}}",
+                   false);
+}
+
 api::ProblemDetails result_too_large_problem(std::uint64_t bytes, const renderer::Limits& limits)
 {
     return api::problem_from_faults(

@@ -3,6 +3,7 @@
 
 #include "api/problem.h"
 #include "renderer/description/fault_list.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/limits.h"
 #include "renderer/description/picture_formats.h"
 #include "renderer/description/scene_description.h"
@@ -37,6 +38,9 @@ api::ProblemDetails picture_lost_problem(const JobId& id, const std::string& ass
 // 406: of a picture that an older build kept, and of one that has more pixels a side than the format.
 api::ProblemDetails png_alone_problem(const JobId& id);
 api::ProblemDetails format_too_small_problem(renderer::PictureFormat format);
+
+// 404: the job was not asked for it.
+api::ProblemDetails no_such_layer_problem(const JobId& id, renderer::Layer layer, renderer::LayerSet asked);
 
 // How a job fails.
 api::ProblemDetails result_too_large_problem(std::uint64_t bytes, const renderer::Limits& limits);

@@ -126,6 +126,7 @@ JobOutcome picture_of(const JobRun& run,
                       const renderer::RenderResult& rendered)
 {
     renderer::Picture picture{.image = rendered.film.mean(),
+                              .layers = rendered.film.layers.mean(rendered.film.samples),
                               .exposure_ev = exposure_ev,
                               .tone = run.request.settings.image.tone,
                               .texts = {}};

@@ -303,6 +303,19 @@ std::variant<EncodedPicture, api::ProblemDetails> JobService::image(const JobId&
     return state_->stored_pictures.get(id, digest, outcome.kept, encoding);
 }
 
+std::variant<EncodedPicture, api::ProblemDetails>
+JobService::layer(const JobId& id, renderer::Layer layer, const renderer::PictureEncoding& encoding)
+{
+    const std::optional<JobRecord> record = state_->store.find({}, id);
+    if (!record) return not_found_problem(id);
+    const renderer::LayerSet asked{record->spec.layers};
+    if (!asked.has(layer)) return no_such_layer_problem(id, layer, asked);
+    auto ended = state_->finished(id, State::Read::picture);
+    if (auto* problem = std::get_if<api::ProblemDetails>(&ended)) return std::move(*problem);
+    const auto& outcome = std::get<JobOutcome>(ended);
+    return state_->stored_pictures.get(id, outcome.result.image_digest, outcome.kept, encoding, layer);
+}
+
 std::variant<std::string, api::ProblemDetails> JobService::report(const JobId& id)
 {
     auto ended = state_->finished(id, State::Read::whole);

@@ -8,6 +8,7 @@
 #include "api/job_request.h"
 #include "api/job_view.h"
 #include "api/problem.h"
+#include "renderer/description/layers.h"
 #include "renderer/description/limits.h"
 #include "renderer/description/picture_formats.h"
 #include "server/import/import_service.h"
@@ -85,6 +86,9 @@ public:
     // where the picture cannot be had in this encoding. What is not a PNG of 8 bits takes the time to encode it.
     std::variant<EncodedPicture, api::ProblemDetails> image(const JobId& id,
                                                             const renderer::PictureEncoding& encoding = {});
+    // A layer beside it likewise; 404 also where the job was not asked for it. `encoding` is of a format that holds it.
+    std::variant<EncodedPicture, api::ProblemDetails>
+    layer(const JobId& id, renderer::Layer layer, const renderer::PictureEncoding& encoding);
     std::variant<std::string, api::ProblemDetails> report(const JobId& id); // JSON text, under this id
     std::variant<std::string, api::ProblemDetails>
     scene(const JobId& id); // as executed, or as accepted until then

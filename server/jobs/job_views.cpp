@@ -40,6 +40,7 @@ api::JobView stored_view(const JobRecord& record)
     view.priority = record.spec.priority;
     view.labels = record.spec.labels;
     view.attempts = record.attempts;
+    view.layers = {record.spec.layers};
     if (record.result) {
         view.progress = 1;
         view.samples_done = record.result->samples;

@@ -12,7 +12,8 @@ namespace server {
 
 namespace {
 
-constexpr std::string_view kMagic = "HGPIC\1";
+constexpr std::string_view kMagic = "HGPIC\2", kMagicBeforeLayers = "HGPIC\1";
+static_assert(kMagic.size() == kMagicBeforeLayers.size());
 
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(renderer::Rgb) == 3 * sizeof(float));
@@ -73,9 +74,14 @@ private:
     std::span<const std::byte> rest_;
 };
 
+bool begins_with(std::span<const std::byte> blob, std::string_view magic)
+{
+    return blob.size() >= magic.size() && std::memcmp(blob.data(), magic.data(), magic.size()) == 0;
+}
+
 bool is_packed(std::span<const std::byte> blob)
 {
-    return blob.size() >= kMagic.size() && std::memcmp(blob.data(), kMagic.data(), kMagic.size()) == 0;
+    return begins_with(blob, kMagic) || begins_with(blob, kMagicBeforeLayers);
 }
 
 renderer::Tone tone_of(std::uint8_t number)
@@ -84,15 +90,47 @@ renderer::Tone tone_of(std::uint8_t number)
     return static_cast<renderer::Tone>(number);
 }
 
+// Where nothing gets smaller: see pack_floats.
+std::size_t most_packed_bytes(const renderer::Picture& picture)
+{
+    constexpr std::size_t kHead = 64;
+    std::size_t bytes = picture.image.pixels.size() * sizeof(renderer::Rgb) + kHead;
+    for (const renderer::LayerImage& layer : picture.layers)
+        bytes += layer.values.size() * sizeof(float) + kHead;
+    return bytes;
+}
+
+void append_floats(std::vector<std::byte>& blob, std::span<const float> values)
+{
+    const auto packed = renderer::pack_floats(values);
+    append_counted(blob, packed.data(), packed.size());
+}
+
+void take_floats(Parts& parts, std::span<float> values)
+{
+    const auto packed = parts.counted();
+    if (!renderer::unpack_floats({reinterpret_cast<const std::uint8_t*>(packed.data()), packed.size()},
+                                 values))
+        broken();
+}
+
+renderer::LayerImage take_layer(Parts& parts, std::size_t pixels)
+{
+    const auto number = parts.number<std::uint8_t>();
+    if (number >= renderer::kLayers.size()) broken();
+    renderer::LayerImage layer{static_cast<renderer::Layer>(number), {}};
+    layer.values.resize(pixels * entry_of(layer.layer).channel_count());
+    take_floats(parts, layer.values);
+    return layer;
+}
+
 } // namespace
 
 std::vector<std::byte> pack_picture(const renderer::Picture& picture, std::span<const std::uint8_t> png)
 {
     const renderer::LinearImage& image = picture.image;
-    const auto film =
-        renderer::pack_floats({reinterpret_cast<const float*>(image.pixels.data()), image.pixels.size() * 3});
     std::vector<std::byte> blob;
-    blob.reserve(png.size() + film.size() + 4096);
+    blob.reserve(png.size() + most_packed_bytes(picture) + 4096);
     append(blob, kMagic.data(), kMagic.size());
     append_counted(blob, png.data(), png.size());
     append(blob, picture.exposure_ev);
@@ -104,7 +142,12 @@ std::vector<std::byte> pack_picture(const renderer::Picture& picture, std::span<
     }
     append(blob, image.width_px);
     append(blob, image.height_px);
-    append_counted(blob, film.data(), film.size());
+    append_floats(blob, {reinterpret_cast<const float*>(image.pixels.data()), image.pixels.size() * 3});
+    append(blob, static_cast<std::uint8_t>(picture.layers.size()));
+    for (const renderer::LayerImage& layer : picture.layers) {
+        append(blob, static_cast<std::uint8_t>(layer.layer));
+        append_floats(blob, layer.values);
+    }
     return blob;
 }
 
@@ -130,12 +173,12 @@ std::optional<renderer::Picture> unpack_picture(std::span<const std::byte> blob)
     renderer::LinearImage& image = picture.image;
     image.width_px = parts.number<std::uint32_t>();
     image.height_px = parts.number<std::uint32_t>();
-    const auto film = parts.counted();
     image.pixels.resize(std::size_t{image.width_px} * image.height_px);
-    const std::span<float> values(reinterpret_cast<float*>(image.pixels.data()), image.pixels.size() * 3);
-    if (!renderer::unpack_floats({reinterpret_cast<const std::uint8_t*>(film.data()), film.size()}, values) ||
-        parts.left() != 0)
-        broken();
+    take_floats(parts, {reinterpret_cast<float*>(image.pixels.data()), image.pixels.size() * 3});
+    const std::size_t layers = begins_with(blob, kMagic) ? parts.number<std::uint8_t>() : 0;
+    for (std::size_t i = 0; i < layers; ++i)
+        picture.layers.push_back(take_layer(parts, image.pixels.size()));
+    if (parts.left() != 0) broken();
     return picture;
 }
 

@@ -2,9 +2,13 @@
 
 namespace server {
 
-std::string picture_key(const std::string& image_digest, const renderer::PictureEncoding& encoding)
+std::string picture_key(const std::string& image_digest,
+                        const renderer::PictureEncoding& encoding,
+                        std::optional<renderer::Layer> layer)
 {
-    return image_digest + std::string(entry_of(encoding.format).extension) + std::to_string(encoding.bits);
+    const std::string of = layer ? "/" + std::string(entry_of(*layer).name) : std::string();
+    return image_digest + of + std::string(entry_of(encoding.format).extension) +
+           std::to_string(encoding.bits);
 }
 
 std::optional<EncodedPicture> PictureCache::find(const std::string& key)

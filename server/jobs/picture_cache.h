@@ -3,6 +3,7 @@
 // Threads  every function may be called from any thread.
 #pragma once
 
+#include "renderer/description/layers.h"
 #include "renderer/description/picture_formats.h"
 #include "server/jobs/live_jobs.h"
 
@@ -22,8 +23,10 @@ struct EncodedPicture {
     std::string digest; // "sha256:..."
 };
 
-// Of the picture in one blob.
-std::string picture_key(const std::string& image_digest, const renderer::PictureEncoding& encoding);
+// Of the picture in one blob, or of a layer beside it.
+std::string picture_key(const std::string& image_digest,
+                        const renderer::PictureEncoding& encoding,
+                        std::optional<renderer::Layer> layer = {});
 
 class PictureCache {
 public:

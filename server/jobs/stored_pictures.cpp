@@ -1,5 +1,6 @@
 #include "server/jobs/stored_pictures.h"
 
+#include "renderer/film/encode_layer.h"
 #include "renderer/film/encode_picture.h"
 #include "server/jobs/job_problems.h"
 #include "server/jobs/kept_picture.h"
@@ -15,9 +16,9 @@ namespace server {
 
 namespace {
 
-bool is_kept_as_sent(const renderer::PictureEncoding& encoding)
+bool is_kept_as_sent(const renderer::PictureEncoding& encoding, std::optional<renderer::Layer> layer)
 {
-    return encoding == renderer::PictureEncoding{};
+    return !layer && encoding == renderer::PictureEncoding{};
 }
 
 EncodedPicture named(std::vector<std::byte> bytes)
@@ -27,11 +28,22 @@ EncodedPicture named(std::vector<std::byte> bytes)
     return picture;
 }
 
-// Of a picture that was kept.
-StoredPictures::Answer
-encode(const JobId& id, std::span<const std::byte> blob, const renderer::PictureEncoding& encoding)
+std::vector<std::uint8_t> encode_layer(const renderer::Picture& picture,
+                                       renderer::Layer layer,
+                                       const renderer::PictureEncoding& encoding)
 {
-    if (is_kept_as_sent(encoding)) {
+    for (const renderer::LayerImage& image : picture.layers)
+        if (image.layer == layer) return renderer::encode_layer(picture, image, encoding);
+    throw StoreError("a kept picture lacks a layer that its job asked for", false);
+}
+
+// Of a picture that was kept.
+StoredPictures::Answer encode(const JobId& id,
+                              std::span<const std::byte> blob,
+                              const renderer::PictureEncoding& encoding,
+                              std::optional<renderer::Layer> layer)
+{
+    if (is_kept_as_sent(encoding, layer)) {
         const auto png = png_of(blob);
         return named({png.begin(), png.end()});
     }
@@ -40,7 +52,8 @@ encode(const JobId& id, std::span<const std::byte> blob, const renderer::Picture
     const std::uint32_t most = entry_of(encoding.format).most_side_px;
     if (std::max(picture->image.width_px, picture->image.height_px) > most)
         return format_too_small_problem(encoding.format);
-    const std::vector<std::uint8_t> bytes = renderer::encode_picture(*picture, encoding);
+    const std::vector<std::uint8_t> bytes =
+        layer ? encode_layer(*picture, *layer, encoding) : renderer::encode_picture(*picture, encoding);
     const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
     return named({first, first + bytes.size()});
 }
@@ -50,12 +63,13 @@ encode(const JobId& id, std::span<const std::byte> blob, const renderer::Picture
 StoredPictures::Answer StoredPictures::get(const JobId& id,
                                            const std::string& digest,
                                            const PictureBytes& kept,
-                                           const renderer::PictureEncoding& encoding)
+                                           const renderer::PictureEncoding& encoding,
+                                           std::optional<renderer::Layer> layer)
 {
-    const std::string key = picture_key(digest, encoding);
+    const std::string key = picture_key(digest, encoding, layer);
     if (auto cached = rooms_.pictures.find(key)) return *std::move(cached);
     std::optional<EncodingTurns::Turn> turn;
-    if (!is_kept_as_sent(encoding)) {
+    if (!is_kept_as_sent(encoding, layer)) {
         turn.emplace(turns_, key);
         if (auto cached = rooms_.pictures.find(key)) return *std::move(cached); // while this waited
     }
@@ -65,7 +79,7 @@ StoredPictures::Answer StoredPictures::get(const JobId& id,
         if (auto* problem = std::get_if<api::ProblemDetails>(&found)) return std::move(*problem);
         bytes = std::move(std::get<PictureBytes>(found));
     }
-    Answer answer = encode(id, *bytes, encoding);
+    Answer answer = encode(id, *bytes, encoding, layer);
     if (const auto* picture = std::get_if<EncodedPicture>(&answer)) rooms_.pictures.put(key, *picture);
     return answer;
 }

@@ -1,4 +1,4 @@
-// StoredPictures: the picture of a job that succeeded, in the encoding that is asked for: from memory, from disk,
+// StoredPictures: the picture of a job that succeeded, or a layer beside it, in the encoding that is asked for: from memory, from disk,
 // or encoded now from the film that is kept; where the disk lost it, the job renders again.
 //
 // A picture is found to be lost (missing, cut off, other bytes) when it is asked for. Its job then goes back
@@ -21,6 +21,7 @@
 #include "server/store/blob_store.h"
 #include "server/store/store.h"
 
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -44,7 +45,8 @@ public:
     Answer get(const JobId& id,
                const std::string& digest,
                const PictureBytes& kept,
-               const renderer::PictureEncoding& encoding);
+               const renderer::PictureEncoding& encoding,
+               std::optional<renderer::Layer> layer = {}); // else the picture
 
 private:
     static constexpr std::size_t kEncodedAtOnce = 2;

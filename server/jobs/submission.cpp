@@ -83,7 +83,8 @@ std::variant<Submission, api::ProblemDetails> read_submission(const SubmitWords&
                 .asset_digests = asset_digests_of(request),
                 .priority = request.priority,
                 .labels = request.labels,
-                .no_cache = words.no_cache};
+                .no_cache = words.no_cache,
+                .layers = request.settings.image.layers.bits};
     out.allow_reuse = may_reuse_stored(submission.sharing);
     out.queue_limit = limits.queue_jobs;
     out.now_ms = unix_ms();

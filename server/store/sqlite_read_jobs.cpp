@@ -10,7 +10,7 @@ namespace {
 const std::string kShortColumns =
     "j.seq, j.id, j.tenant, j.state, j.priority, j.epoch, j.attempts, j.cancel_requested, j.reused, "
     "j.created_ms, j.started_ms, j.finished_ms, j.render_key, j.failure_json, r.image_digest, r.samples, "
-    "r.reusable, j.no_cache";
+    "r.reusable, j.no_cache, j.layers";
 const std::string kFromJobs = " FROM jobs j LEFT JOIN results r ON r.job = j.seq";
 const std::string kShortJob = "SELECT " + kShortColumns + kFromJobs;
 const std::string kHead = "SELECT seq, state, cancel_requested, attempts FROM jobs";
@@ -40,6 +40,7 @@ JobRow short_row(const SqliteStatement& row)
     record.spec.render_key = row.text(12);
     record.failure.summary_json = row.text(13);
     record.spec.no_cache = row.integer(17) != 0;
+    record.spec.layers = static_cast<std::uint32_t>(row.integer(18));
     if (row.is_null(14)) return job;
     record.result.emplace();
     record.result->image_digest = row.text(14);

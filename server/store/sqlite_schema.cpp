@@ -17,7 +17,7 @@ std::string ended_index()
     return "CREATE INDEX jobs_without_result ON jobs(finished_ms) WHERE state IN (" + kWithoutResult + ");\n";
 }
 
-constexpr std::int64_t kSchemaVersion = 3;
+constexpr std::int64_t kSchemaVersion = 4;
 constexpr std::int64_t kApplicationId = 0x48656C69; // "Heli"
 
 // `seq` is the order of submission (never a clock) and never used twice. `state` is StoredState's number.
@@ -39,7 +39,8 @@ CREATE TABLE jobs(
     finished_ms INTEGER, -- if and only if the state is final
     render_key TEXT NOT NULL,
     failure_json TEXT NOT NULL DEFAULT '', -- the summary
-    no_cache INTEGER NOT NULL DEFAULT 0
+    no_cache INTEGER NOT NULL DEFAULT 0,
+    layers INTEGER NOT NULL DEFAULT 0
 ) STRICT;
 CREATE INDEX jobs_of_tenant ON jobs(tenant, seq);
 CREATE INDEX jobs_in_state ON jobs(tenant, state, seq);
@@ -157,7 +158,9 @@ ALTER TABLE jobs RENAME COLUMN error_json TO failure_json;
 // What each version added to the one before: the first is from 1 to 2.
 std::vector<std::string> steps()
 {
-    return {"ALTER TABLE jobs ADD COLUMN no_cache INTEGER NOT NULL DEFAULT 0", step_to_texts()};
+    return {"ALTER TABLE jobs ADD COLUMN no_cache INTEGER NOT NULL DEFAULT 0",
+            step_to_texts(),
+            "ALTER TABLE jobs ADD COLUMN layers INTEGER NOT NULL DEFAULT 0"};
 }
 
 // No mmap_size: an I/O error in a mapped page would be a signal.

@@ -27,8 +27,8 @@ std::int64_t keep_text(SqliteConnection& db, const std::string& text)
 std::int64_t insert_job(SqliteConnection& db, const JobRecord& job)
 {
     db.prepare("INSERT INTO jobs(id, tenant, state, priority, reused, created_ms, finished_ms, render_key, "
-               "no_cache) "
-               "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)")
+               "no_cache, layers) "
+               "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)")
         .bind(job.id,
               job.tenant,
               static_cast<std::int64_t>(job.state),
@@ -37,7 +37,8 @@ std::int64_t insert_job(SqliteConnection& db, const JobRecord& job)
               job.created_ms,
               job.finished_ms,
               job.spec.render_key,
-              std::int64_t{job.spec.no_cache})
+              std::int64_t{job.spec.no_cache},
+              std::int64_t{job.spec.layers})
         .run();
     const std::int64_t sequence = db.last_row();
     db.prepare("INSERT INTO requests(job, request) VALUES (?1, ?2)")

@@ -55,7 +55,8 @@ struct JobSpec {
     std::vector<std::string> asset_digests; // in use while the job is not final
     int priority = 50;
     std::map<std::string, std::string> labels;
-    bool no_cache = false; // takes no other job's result, at no time
+    bool no_cache = false;    // takes no other job's result, at no time
+    std::uint32_t layers = 0; // bits of those that are kept beside its picture
 };
 
 struct JobResult {

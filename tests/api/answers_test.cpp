@@ -46,6 +46,18 @@ TEST(JobObject, TellsWhatAQueuedJobIs)
     EXPECT_EQ(job["links"]["image"], "/v1/jobs/" + view.id + "/image");
 }
 
+TEST(JobObject, LinksTheLayersThatItWasAskedForAndNoOthers)
+{
+    api::JobView view = a_job();
+    EXPECT_FALSE(checked(api::write_job_view(view), "Job")["links"].contains("layers"));
+    view.layers.add(renderer::Layer::albedo);
+    view.layers.add(renderer::Layer::depth);
+    const json job = checked(api::write_job_view(view), "Job");
+    EXPECT_EQ(job["links"]["layers"],
+              (json{{"depth", "/v1/jobs/" + view.id + "/layers/depth"},
+                    {"albedo", "/v1/jobs/" + view.id + "/layers/albedo"}}));
+}
+
 TEST(JobObject, CarriesTheFaultOfAFailedJob)
 {
     api::JobView view = a_job();

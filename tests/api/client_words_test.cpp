@@ -85,7 +85,23 @@ TEST(ClientWords, AddToAJobAndLeaveTheRestAsItWas)
     EXPECT_EQ(request->settings.seed, 9007199254740991u);
     EXPECT_EQ(request->priority, 7);
     EXPECT_EQ(request->labels, (std::map<std::string, std::string>{{"x", "1"}, {"y", "3"}}));
+    EXPECT_TRUE(request->settings.image.layers.empty());
     EXPECT_THROW(api::add_to_job("no job", {}), std::invalid_argument);
+}
+
+TEST(ClientWords, AddLayersToThoseThatAJobAsksFor)
+{
+    for (const char* image : {R"({"layers":["normal","depth"]})", R"({"width":8})"}) {
+        const std::string job =
+            std::string(R"({"scene":{"objects":[{"shape":"sphere"}]},"image":)") + image + "}";
+        api::JobAdditions additions;
+        additions.layers.add(renderer::Layer::depth);
+        additions.layers.add(renderer::Layer::normal);
+        const auto read = api::read_job(api::add_to_job(job, additions), {});
+        const auto* request = std::get_if<api::JobRequest>(&read);
+        ASSERT_TRUE(request) << std::get<api::ProblemDetails>(read).detail;
+        EXPECT_EQ(request->settings.image.layers, additions.layers);
+    }
 }
 
 TEST(Provenance, NamesTheRenderAndIsLeftOutOnRequest)

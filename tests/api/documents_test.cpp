@@ -25,6 +25,7 @@ const std::set<std::string> kServed{"/",
                                     "/v1/jobs/{id}",
                                     "/v1/jobs/{id}/cancel",
                                     "/v1/jobs/{id}/image",
+                                    "/v1/jobs/{id}/layers/{name}",
                                     "/v1/jobs/{id}/report",
                                     "/v1/jobs/{id}/scene"};
 

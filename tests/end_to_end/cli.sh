@@ -50,6 +50,20 @@ equal succeeded "$("$helio" status "$id" --json | jq -r .state)" "status --json"
 equal 0 "$(code_of "$helio" fetch "$id" -o fetched.png)" "fetch: $(cat err)"
 cmp local.png fetched.png || fail "the fetched picture differs"
 "$helio" fetch "$id" -o - | cmp - local.png || fail "fetch to standard output differs"
+# Layers: run asks for them, fetch gets them; render gives the same bytes.
+"$helio" render scenes/scene.json -o local.exr --layer depth=local_depth.pfm --layer albedo=local_albedo.png
+equal 0 "$(code_of "$helio" run scenes/scene.json -o remote.exr --layer depth=depth.pfm --layer albedo=albedo.png --label batch=layers)" \
+    "run --layer: $(cat err)"
+cmp local.exr remote.exr || fail "run and render of layers differ"
+cmp local_depth.pfm depth.pfm || fail "the fetched depth differs"
+cmp local_albedo.png albedo.png || fail "the fetched albedo differs"
+layered=$("$helio" list --label batch=layers | cut -d' ' -f1)
+equal 0 "$(code_of "$helio" fetch "$layered" --layer depth=again.pfm)" "fetch --layer: $(cat err)"
+cmp local_depth.pfm again.pfm || fail "the depth fetched alone differs"
+equal 5 "$(code_of "$helio" fetch "$layered" --layer normal=no.exr)" "fetch of a layer that was not asked for"
+[ ! -e no.exr ] || fail "a failed fetch left a file"
+equal 0 "$(code_of "$helio" rm "$layered")" "rm of the job with layers"
+
 "$helio" list --label batch=seven >out
 equal "$id" "$(cut -d' ' -f1 out)" "list --label"
 equal 3 "$("$helio" list | wc -l)" "jobs in the list"

@@ -48,6 +48,16 @@ is_png deep.png
 equal 10 "$(od -An -tx1 -j24 -N1 deep.png | tr -d ' ')" "bits a channel"
 equal 406 "$(curl -sS -o answer -w '%{http_code}' -H 'Accept: image/webp' "$U/v1/jobs/$id/image")" "a format that is not written"
 
+# Layers beside it, by the links of the job object.
+layered=$(jq '.image.layers = ["depth", "normal"]' scene.json |
+    curl --fail -sS --json @- -H 'Prefer: wait=30' "$U/v1/jobs" | jq -r .id)
+depth=$(curl -sS "$U/v1/jobs/$layered" | jq -r .links.layers.depth)
+curl --fail -sS -o depth.exr "$U$depth"
+equal 762f3101 "$(od -An -tx1 -N4 depth.exr | tr -d ' ')" "the first bytes of a layer"
+curl --fail -sS -H 'Accept: image/png' -o normal.png "$U/v1/jobs/$layered/layers/normal"
+is_png normal.png
+equal 404 "$(curl -sS -o answer -w '%{http_code}' "$U/v1/jobs/$layered/layers/albedo")" "a layer that was not asked for"
+
 # The classic slip, and with a body far over 8 KiB.
 equal 202 "$(curl -sS -o /dev/null -w '%{http_code}' -d @scene.json "$U/v1/jobs")" "form content type"
 jq '.labels = ([range(64) | {key: "label_\(.)", value: ("a value that takes room, number \(.), " * 4)}] | from_entries)' scene.json >large.json

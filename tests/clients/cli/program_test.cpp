@@ -77,6 +77,42 @@ TEST(Heliograph, TellsWhatTheImportMissedOnStandardErrorAndInTheReport)
     EXPECT_THAT(notes[0].get<std::string>(), StartsWith(note));
 }
 
+TEST(Heliograph, WritesTheLayersThatItIsAskedFor)
+{
+    const TempFolder folder;
+    copy_asset(folder, "knot.obj");
+    const std::string scene = folder.write("scene.json", knot_scene());
+    const ProgramRun run = heliograph({"render",
+                                       scene,
+                                       "-o",
+                                       folder.file("out.exr"),
+                                       "--layer",
+                                       "depth=" + folder.file("depth.pfm"),
+                                       "--layer",
+                                       "normal=" + folder.file("normal.png")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(bytes_of(folder.file("depth.pfm")), StartsWith("Pf\n70 45\n-1.0\n"));
+    EXPECT_THAT(bytes_of(folder.file("normal.png")), StartsWith("\x89PNG"));
+    // The picture's own file has them, and is the same picture.
+    EXPECT_THAT(bytes_of(folder.file("out.exr")), HasSubstr("N.X"));
+    EXPECT_EQ(heliograph({"render", scene, "-o", folder.file("plain.exr")}).exit_code, 0);
+    EXPECT_THAT(heliograph({"compare", folder.file("out.exr"), folder.file("plain.exr"), "--json"}).out,
+                HasSubstr("\"rmse\":0"));
+}
+
+TEST(Heliograph, RefusesLayersThatItCannotWriteBeforeItRenders)
+{
+    const TempFolder folder;
+    copy_asset(folder, "knot.obj");
+    const std::string scene = folder.write("scene.json", knot_scene());
+    for (const std::string layer :
+         {"depth", "=a.exr", "depht=a.exr", "depth=a.png", "normal=a.jpg", "albedo=/no/such/folder/a.exr"}) {
+        const ProgramRun run = heliograph({"render", scene, "-o", folder.file("out.png"), "--layer", layer});
+        EXPECT_EQ(run.exit_code, 2) << layer << run.err;
+        EXPECT_FALSE(std::filesystem::exists(folder.file("out.png"))) << layer;
+    }
+}
+
 TEST(Heliograph, LetsTimeAsAFlagWinOverSamplesOfTheEnvironment)
 {
     const TempFolder folder;

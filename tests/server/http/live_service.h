@@ -92,6 +92,13 @@ inline std::string quick_job(int seed = 1)
            std::to_string(seed) + "}";
 }
 
+// Quick, with every layer: a ball that leaves part of the picture empty.
+inline std::string layered_job(int seed = 1)
+{
+    return R"({"scene":{"objects":[{"shape":"sphere"}]},"image":{"width":16,"height":12,"layers":["depth","normal","albedo","samples"]},"quality":{"samples":3},"seed":)" +
+           std::to_string(seed) + "}";
+}
+
 // Not finished before the test is.
 inline std::string long_job(int seed = 1)
 {

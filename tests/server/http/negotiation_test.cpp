@@ -101,6 +101,27 @@ TEST(Accept, ChoosesTheFormatThatSuitsBest)
     EXPECT_FALSE(server::read_accept("image/jpeg").takes(png));
 }
 
+TEST(Accept, ChoosesAmongTheFormatsThatHoldALayer)
+{
+    using renderer::Layer;
+    using renderer::PictureFormat;
+    struct Case {
+        const char* accept;
+        Layer layer;
+        std::optional<PictureFormat> best;
+    };
+    for (const auto& [accept, layer, best] : {
+             Case{"", Layer::depth, PictureFormat::exr},
+             Case{"*/*", Layer::normal, PictureFormat::exr},
+             Case{"image/*;q=0.5, image/png", Layer::normal, PictureFormat::png},
+             Case{"image/*;q=0.5, image/png", Layer::depth, PictureFormat::exr},
+             Case{"image/png, image/x-portable-floatmap;q=0.1", Layer::samples, PictureFormat::pfm},
+             Case{"image/png", Layer::depth, std::nullopt},
+             Case{"image/jpeg, image/vnd.radiance", Layer::albedo, std::nullopt},
+         })
+        EXPECT_EQ(server::read_accept(accept).best_of(layer), best) << accept;
+}
+
 TEST(CacheControl, NoCacheAsksForAFreshRender)
 {
     EXPECT_TRUE(server::wants_fresh("max-age=0, No-Cache"));

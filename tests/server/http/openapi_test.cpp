@@ -40,7 +40,7 @@ protected:
         digest = tests::json_of(service.post("/v1/assets", tests::bytes_of(tests::asset_dir() + "/knot.ply")))
                      .at("digest")
                      .get<std::string>();
-        done = service.finish(tests::quick_job());
+        done = service.finish(tests::layered_job());
     }
 
     const json& followed(const json& node) const
@@ -105,7 +105,7 @@ protected:
     std::string filled(std::string path, const std::string& id, const std::string& asset) const
     {
         for (const auto& [name, value] :
-             std::map<std::string, std::string>{{"{id}", id}, {"{digest}", asset}})
+             std::map<std::string, std::string>{{"{id}", id}, {"{digest}", asset}, {"{name}", "normal"}})
             if (const std::size_t at = path.find(name); at != std::string::npos)
                 path.replace(at, name.size(), value);
         return path;
@@ -149,9 +149,12 @@ TEST_F(OpenApi, DescribesWhatEveryGetAnswers)
 
 TEST_F(OpenApi, DescribesConditionsRangesAndPicturesNotYetThere)
 {
-    const std::string image = "/v1/jobs/{id}/image", asset = "/v1/assets/{digest}";
-    for (const auto& [path, target] : std::map<std::string, std::string>{
-             {image, filled(image, done, "")}, {asset, filled(asset, "", digest)}}) {
+    const std::string image = "/v1/jobs/{id}/image", layer = "/v1/jobs/{id}/layers/{name}",
+                      asset = "/v1/assets/{digest}";
+    for (const auto& [path, target] :
+         std::map<std::string, std::string>{{image, filled(image, done, "")},
+                                            {layer, filled(layer, done, "")},
+                                            {asset, filled(asset, "", digest)}}) {
         const std::string etag = service.get(target).header("etag");
         EXPECT_EQ(ask(path, "GET", target, {{"Range", "bytes=0-3"}}).status, 206);
         EXPECT_EQ(ask(path, "GET", target, {{"Range", "bytes=99999999-"}}).status, 416);
@@ -165,6 +168,14 @@ TEST_F(OpenApi, DescribesConditionsRangesAndPicturesNotYetThere)
         EXPECT_EQ(ask(image, "GET", filled(image, done, ""), {{"Accept", type}}).status, 200) << type;
     EXPECT_EQ(ask(image, "GET", filled(image, done, "") + "?bits=16").status, 200);
     EXPECT_EQ(ask(image, "GET", filled(image, done, "") + "?bits=12").status, 422);
+    for (const char* type : {"image/png", "image/x-exr", "image/x-portable-floatmap"})
+        EXPECT_EQ(ask(layer, "GET", filled(layer, done, ""), {{"Accept", type}}).status, 200) << type;
+    EXPECT_EQ(ask(layer, "GET", filled(layer, done, ""), {{"Accept", "image/jpeg"}}).status, 406);
+    EXPECT_EQ(ask(layer, "GET", filled(layer, done, "") + "?bits=16").status, 200);
+    EXPECT_EQ(ask(layer, "GET", filled("/v1/jobs/{id}/layers/error", done, "")).status, 404);
+    EXPECT_EQ(
+        ask("/v1/jobs/{id}", "GET", filled("/v1/jobs/{id}", service.finish(tests::quick_job()), "")).status,
+        200); // without layers
     const std::string running = service.submit(tests::long_job()).header("location");
     EXPECT_EQ(ask("/v1/jobs/{id}", "GET", running).status, 200);
     EXPECT_EQ(ask(image, "GET", running + "/image").status, 504);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 
 namespace {
 
@@ -46,6 +47,38 @@ TEST(KeptPicture, GivesBackThePngAndEveryBitOfTheFilm)
     ASSERT_EQ(back->texts.size(), 2u);
     EXPECT_EQ(back->texts[0].keyword + back->texts[0].text, "Softwareheliograph");
     EXPECT_EQ(back->texts[1].keyword + back->texts[1].text, "heliograph");
+}
+
+TEST(KeptPicture, GivesBackEveryBitOfTheLayers)
+{
+    renderer::Picture picture = some_picture();
+    const float far = std::numeric_limits<float>::infinity();
+    picture.layers = {{renderer::Layer::depth, {1, 2, far, 4, 5, 1e-40f}},
+                      {renderer::Layer::normal, std::vector<float>(18, -0.5f)},
+                      {renderer::Layer::samples, std::vector<float>(6, 64)}};
+    const auto blob = pack_picture(picture, kPng);
+    const auto back = unpack_picture(blob);
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(back->image.pixels == picture.image.pixels);
+    ASSERT_EQ(back->layers.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(back->layers[i].layer, picture.layers[i].layer);
+        EXPECT_EQ(back->layers[i].values, picture.layers[i].values);
+    }
+    for (std::size_t size = 6; size < blob.size(); ++size)
+        EXPECT_THROW(unpack_picture(std::span(blob).first(size)), server::StoreError) << size;
+}
+
+TEST(KeptPicture, OfABuildBeforeLayersHasNone)
+{
+    auto blob = pack_picture(some_picture(), kPng);
+    ASSERT_EQ(blob[5], std::byte{2});
+    blob[5] = std::byte{1};
+    blob.pop_back(); // their number
+    const auto back = unpack_picture(blob);
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(back->image.pixels == some_picture().image.pixels);
+    EXPECT_TRUE(back->layers.empty());
 }
 
 TEST(KeptPicture, OfAnOlderBuildIsAPngAlone)

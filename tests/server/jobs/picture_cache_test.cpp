@@ -58,7 +58,9 @@ TEST(PictureCache, TellsEncodingsOfOnePictureApart)
         keys.insert(server::picture_key("sha256:a", {entry.format, 8}));
     keys.insert(server::picture_key("sha256:a", {renderer::PictureFormat::png, 16}));
     keys.insert(server::picture_key("sha256:b", {}));
-    EXPECT_EQ(keys.size(), renderer::kPictureFormats.size() + 2);
+    for (const renderer::LayerEntry& entry : renderer::kLayers)
+        keys.insert(server::picture_key("sha256:a", {}, entry.layer));
+    EXPECT_EQ(keys.size(), renderer::kPictureFormats.size() + 2 + renderer::kLayers.size());
 }
 
 } // namespace

@@ -206,6 +206,24 @@ PRAGMA user_version=)sql" +
                    .c_str());
 }
 
+TEST(SqliteStore, TakesUpADatabaseOfBeforeLayers)
+{
+    const TempFolder folder;
+    const auto file = folder.path() / "jobs.sqlite";
+    open_sqlite_store(file)->submit(a_request("was here"));
+    {
+        SqliteConnection db(file, SqliteConnection::Open::existing);
+        db.execute("ALTER TABLE jobs DROP COLUMN layers; PRAGMA user_version=3");
+    }
+    const auto store = open_sqlite_store(file);
+    const auto jobs = store->list({.tenant = "alice"}).jobs;
+    ASSERT_EQ(jobs.size(), 1U);
+    EXPECT_EQ(jobs[0].spec.layers, 0U);
+    auto request = a_request("new");
+    request.spec.layers = 3;
+    EXPECT_EQ(store->find("alice", store->submit(request).job.id)->spec.layers, 3U);
+}
+
 TEST(SqliteStore, TakesUpADatabaseOfAnEarlierVersion)
 {
     for (const int version : {1, 2}) {

@@ -52,6 +52,17 @@ TEST_P(StoreQueue, RemembersThatAJobTakesNoOthersResult)
     EXPECT_FALSE(get(submit("other").id).spec.no_cache);
 }
 
+TEST_P(StoreQueue, RemembersTheLayersThatAJobWasAskedFor)
+{
+    auto request = a_request("layered");
+    request.spec.layers = 5;
+    const server::JobRecord job = store->submit(request).job;
+    EXPECT_EQ(job.spec.layers, 5U);
+    EXPECT_EQ(get(job.id).spec.layers, 5U);
+    EXPECT_EQ(store->list({.tenant = "alice"}).jobs.at(0).spec.layers, 5U);
+    EXPECT_EQ(get(submit("other").id).spec.layers, 0U);
+}
+
 TEST_P(StoreQueue, LetsTheCallerNameAJobOnce)
 {
     auto request = a_request("named");
