@@ -1,5 +1,6 @@
 #include "renderer/plan/budget.h"
 
+#include "renderer/description/textured_values.h"
 #include "renderer/plan/joined_objects.h"
 
 #include <algorithm>
@@ -24,8 +25,8 @@ constexpr std::uint64_t kMeshBytesPerTriangle = 12 + 2; // indices, material
 constexpr std::uint64_t kTreeBytesPerTriangle = 56;
 // Items twice and the binary tree, less what is there in the end.
 constexpr std::uint64_t kBuildingBytesPerTriangle = 28;
-// What the scene's own words take, and how an object is shaded.
-constexpr std::uint64_t kBytesPerObject = kInstanceBytes + sizeof(ObjectDescription) + 96;
+// The scene's own words, as they came, as they were read and with every default filled in; and how an object is shaded.
+constexpr std::uint64_t kBytesPerObject = kInstanceBytes + 90 + 2 * sizeof(ObjectDescription) + 96;
 constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle = 48;
 // Three corners of their own, indices, and where it came from; residuals.
 constexpr std::uint64_t kJoinedBytesPerTriangle =
@@ -80,7 +81,7 @@ std::string refused(std::uint64_t value, const std::string& what, const char* li
 }
 
 // Radiance and running sums: see lights/environment_map.h.
-constexpr std::uint64_t kEnvironmentBytesPerPixel = 24;
+constexpr std::uint64_t kEnvironmentBytesPerPixel = 12 + 4;
 
 // Tables of an air, a group of four wavelengths, and of the views from the eye.
 std::uint64_t sky_bytes(const AtmosphereDescription& a)
@@ -117,9 +118,38 @@ void add_mesh(Budget& budget, const MeshFacts& mesh)
             mesh.triangles * kResidualBytesPerTriangle + mesh.vertices * kResidualBytesPerVertex;
 }
 
+namespace {
+
+// A picture of the surroundings alone has no levels.
+bool is_on_surfaces(const SceneDescription& scene, std::uint32_t image)
+{
+    bool found = false;
+    for (const NamedMaterial& named : scene.materials) {
+        const TextureUse* const tilt = normal_map_of(named.material);
+        found = found || (tilt != nullptr && tilt->image == image);
+        for_each_textured(named.material, [&](const auto& value) {
+            found = found || (value.texture && value.texture->image == image);
+        });
+    }
+    return found;
+}
+
+// Results of so few samples never fill the room that they may take.
+std::uint64_t merge_bytes(std::uint64_t pixels, const RenderSettings& settings)
+{
+    constexpr std::uint64_t kSumBytes = 3 * 8, kSamplesAtOnce = 4;
+    const QualitySettings& quality = settings.quality;
+    const std::uint64_t samples =
+        quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);
+    return std::min(kMergeBytes, pixels * kSumBytes * ((samples + kSamplesAtOnce - 1) / kSamplesAtOnce));
+}
+
+} // namespace
+
 void add_image(Budget& budget, const ImageFacts& image)
 {
-    constexpr std::uint64_t kPlaneBytesPerPixel = 4 * sizeof(float); // of the level at hand, as numbers
+    // Of the level at hand, as numbers, and of the next.
+    constexpr std::uint64_t kPlaneBytesPerPixel = 4 * sizeof(float) + sizeof(float);
     budget.texture_bytes += image.bytes + image.bytes / 3;
     budget.building_bytes =
         std::max(budget.building_bytes, std::uint64_t{image.width} * image.height * kPlaneBytesPerPixel);
@@ -134,7 +164,8 @@ Budget predict(const SceneDescription& scene,
     const ImageSettings& image = settings.image;
     b.pixels = image.region ? std::uint64_t{image.region->width} * image.region->height
                             : std::uint64_t{image.width_px} * image.height_px;
-    b.film_bytes = b.pixels * (kFilmBytesPerPixel + layer_bytes_per_pixel(image.layers)) + kMergeBytes;
+    b.film_bytes = b.pixels * (kFilmBytesPerPixel + layer_bytes_per_pixel(image.layers)) +
+                   merge_bytes(b.pixels, settings);
     b.mesh_bytes = scene.objects.size() * kBytesPerObject + tree_bytes(triangles_of_parts(scene, meshes));
     const std::uint64_t joined = most_joined_triangles(scene, meshes);
     b.mesh_bytes += tree_bytes(joined) + joined * kJoinedBytesPerTriangle;
@@ -151,8 +182,12 @@ Budget predict(const SceneDescription& scene,
     if (const auto* const air =
             scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr)
         b.texture_bytes += sky_bytes(*air);
-    for (const ImageFacts& facts : images)
-        add_image(b, facts);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (is_on_surfaces(scene, static_cast<std::uint32_t>(i)))
+            add_image(b, images[i]);
+        else
+            b.texture_bytes += images[i].bytes;
+    }
     if (settings.acceleration.levels == BvhLevels::none)
         for (const ObjectDescription& object : scene.objects)
             b.listed_triangles += triangles_of(object.shape, meshes);

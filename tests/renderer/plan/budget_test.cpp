@@ -251,3 +251,21 @@ TEST(Budget, IsWhatThePlanPredictsPicturesAndAll)
     check_budget(with, limits, faults);
     EXPECT_FALSE(faults.empty());
 }
+
+TEST(Budget, CountsLevelsOfPicturesOnSurfacesAlone)
+{
+    constexpr std::uint64_t kPixels = 4096 * 2048;
+    const std::vector pictures{renderer::ImageFacts{4096, 2048, kPixels * 12, false, true}};
+    SceneDescription scene = scene_of({});
+    scene.environment = renderer::ImageEnvironment{};
+    const Budget around = predict(scene, {}, {}, pictures);
+    EXPECT_EQ(around.texture_bytes, kPixels * (12 + 12 + 4)); // decoded; radiance and running sums
+    EXPECT_LT(around.building_bytes, kPixels);
+    renderer::DiffuseMaterial painted;
+    painted.color.texture = renderer::TextureUse{};
+    scene.environment.reset();
+    scene.materials = {{"painted", painted}};
+    const Budget on_surfaces = predict(scene, {}, {}, pictures);
+    EXPECT_EQ(on_surfaces.texture_bytes, kPixels * (12 + 4));
+    EXPECT_EQ(on_surfaces.building_bytes, kPixels * 20); // a level and the next, as numbers
+}
