@@ -1,9 +1,9 @@
 // heliograph-bench tiles: parallel efficiency of the tile loop, t(1) / (n t(n)), in one run: for a picture
 // with work everywhere, and for one whose every costly pixel lies in a single 16x16 tile.
 //
-// Beside each pair of renders stands a control: arithmetic in registers, on the same threads, which share
-// nothing but the machine. What it loses (one core's two hyper-threads, clocks, other programs) no renderer can
-// win; the ratio to it is the loop's own. `work` is cpu(1) / cpu(n), below 100 % where threads make each other
+// Beside each pair of renders stand two controls on as many threads, which share nothing but the machine: `arithmetic` in
+// registers, and `apart`, a whole render of its own for each thread. What they lose (one core's two hyper-threads, clocks,
+// caches, other programs) no renderer can win; `ratio` is to `apart` and is the loop's own. `work` is cpu(1) / cpu(n), below 100 % where threads make each other
 // slower; `busy` is cpu(n) / (n t(n)), below 100 % where they wait or are not let run.
 #include "renderer/math/transcendental.h"
 #include "renderer/render.h"
@@ -16,7 +16,9 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <memory>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace bench {
@@ -96,6 +98,28 @@ Times render_times(const AssumedScene& scene, RenderSettings settings, unsigned 
     });
 }
 
+// The picture once on each of `threads` threads, each with its own scene, pool and film.
+Times apart_times(const AssumedScene& scene, RenderSettings settings, unsigned threads)
+{
+    settings.acceleration.threads = 1;
+    const std::variant<Plan, std::vector<Fault>> planned = make_plan(scene, {}, settings, Limits::none());
+    const Plan& plan = std::get<Plan>(planned);
+    std::vector<std::unique_ptr<ThreadPool>> pools;
+    std::vector<std::shared_ptr<const Scene>> scenes;
+    for (unsigned i = 0; i < threads; ++i) {
+        pools.push_back(std::make_unique<ThreadPool>(1));
+        scenes.push_back(prepare(scene, plan, {}, settings, *pools.back()));
+    }
+    std::atomic<unsigned> stopped = 0;
+    const Times times = time_of([&] {
+        std::vector<std::jthread> renders;
+        for (unsigned i = 0; i < threads; ++i)
+            renders.emplace_back([&, i] { stopped += !render(*scenes[i], plan, settings, *pools[i]); });
+    });
+    if (stopped != 0) throw std::runtime_error("a render was stopped");
+    return times;
+}
+
 double efficiency_of(const Times& one, const Times& all, unsigned n)
 {
     return one.wall_s / (n * all.wall_s);
@@ -118,35 +142,30 @@ void measure(const char* name, RenderSettings settings, int repeats)
     const unsigned n = pool.size();
     const AssumedScene scene = assume_defaults(ball_of_spheres(), {}, 1);
     const std::size_t items = std::size_t{16} * n;
-    std::vector<double> efficiency, of_control, ratio, work, busy;
+    std::vector<double> efficiency, of_control, of_apart, ratio, work, busy;
     for (int i = 0; i < repeats; ++i) {
         const Times one = render_times(scene, settings, 1, pool), control_one = control(items, 1, pool),
-                    all = render_times(scene, settings, n, pool), control_all = control(items, n, pool);
+                    all = render_times(scene, settings, n, pool), control_all = control(items, n, pool),
+                    apart = apart_times(scene, settings, n);
         efficiency.push_back(efficiency_of(one, all, n));
         of_control.push_back(efficiency_of(control_one, control_all, n));
-        ratio.push_back(efficiency.back() / of_control.back());
+        of_apart.push_back(one.wall_s / apart.wall_s);
+        ratio.push_back(efficiency.back() / of_apart.back());
         work.push_back(one.cpu_s / all.cpu_s);
         busy.push_back(all.cpu_s / (n * all.wall_s));
     }
-    const Spread own(efficiency), machine(of_control), to_machine(ratio);
-    std::printf(
-        "%s, %u threads, median of %d\n"
-        "  efficiency %.1f %% (%.1f to %.1f; goal 97)   control %.1f %% (%.1f to %.1f)   ratio %.1f %% "
-        "(%.1f to %.1f)   work %.1f %%   busy %.1f %%\n",
-        name,
-        n,
-        repeats,
-        own.median,
-        own.least,
-        own.most,
-        machine.median,
-        machine.least,
-        machine.most,
-        to_machine.median,
-        to_machine.least,
-        to_machine.most,
-        Spread(work).median,
-        Spread(busy).median);
+    std::printf("%s, %u threads, median of %d (least to most)\n ", name, n, repeats);
+    const auto print = [](const char* what, const std::vector<double>& values) {
+        const Spread spread(values);
+        std::printf("  %s %.1f %% (%.1f to %.1f)", what, spread.median, spread.least, spread.most);
+    };
+    print("efficiency, goal 97", efficiency);
+    print("arithmetic", of_control);
+    print("apart", of_apart);
+    print("ratio", ratio);
+    print("work", work);
+    print("busy", busy);
+    std::printf("\n");
     std::fflush(stdout);
 }
 
