@@ -141,6 +141,9 @@ public:
     {
     }
 
+    // False where a leaf that the beam met concerned hardly more than one of its rays, and there were many.
+    HWY_INLINE bool paid() const { return leaves_ < 64 || rays_in_leaves_ >= 2 * leaves_; }
+
     HWY_INLINE void walk()
     {
         struct Waiting {
@@ -185,6 +188,8 @@ private:
     HWY_INLINE bool visit_leaf(std::uint32_t code, std::uint32_t node, std::uint32_t child)
     {
         const unsigned active = rays_entering(p_, beam_, mesh_.nodes[node], child);
+        ++leaves_;
+        rays_in_leaves_ += static_cast<unsigned>(__builtin_popcount(active));
         if (active == 0) return false;
         bool drawn = false;
         const TriangleBlock* block = mesh_.leaves + (code & ChildCode::kNumber);
@@ -213,7 +218,7 @@ private:
     RayRun& p_;
     const Beam beam_;
     MeshHit* best_;
-    unsigned hit_ = 0;
+    unsigned hit_ = 0, leaves_ = 0, rays_in_leaves_ = 0;
 };
 
 } // namespace

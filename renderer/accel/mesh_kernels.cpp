@@ -50,11 +50,11 @@ void trace_apart(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit*
         hits[i].t *= run.ray_units[i];
 }
 
-std::uint32_t found(const MeshHit* hits, unsigned count)
+std::uint64_t found(const MeshHit* hits, unsigned count)
 {
-    std::uint32_t found = 0;
+    std::uint64_t found = 0;
     for (unsigned i = 0; i < count; ++i)
-        found |= (hits[i].primitive != TriangleBlock::kNone ? 1u : 0u) << i;
+        found |= std::uint64_t{hits[i].primitive != TriangleBlock::kNone} << i;
     return found;
 }
 
@@ -82,15 +82,18 @@ bool may_run_alike(const Ray* rays, unsigned count)
 }
 
 template <bool kAnyHit>
-std::uint32_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+std::uint64_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
     if (mesh.nodes == nullptr) return 0;
     if (!may_run_alike(rays, count)) {
         trace_apart<kAnyHit>(mesh, rays, count, hits);
         return found(hits, count);
     }
+    SharedWalks* const beams = mesh.walks != nullptr ? &mesh.walks->beams[kAnyHit] : nullptr;
     RayRun run;
-    const Following how = prepare_run(run, mesh, rays, count);
+    const Following how = beams != nullptr && !beams->worth_trying(rays[0])
+                              ? Following::apart
+                              : prepare_run(run, mesh, rays, count);
     if (how == Following::none) return 0;
     if (how == Following::apart) {
         trace_apart<kAnyHit>(mesh, rays, count, hits);
@@ -98,37 +101,39 @@ std::uint32_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, M
     }
     for (unsigned i = 0; i < count; ++i)
         hits[i] = {std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
-    PacketWalk<kAnyHit>(mesh, run, hits).walk();
+    PacketWalk<kAnyHit> walk(mesh, run, hits);
+    walk.walk();
+    if (beams != nullptr) beams->tell(walk.paid());
     for (unsigned i = 0; i < count; ++i)
         hits[i].t *= run.ray_units[i];
     return found(hits, count);
 }
 
 template <bool kAnyHit>
-bool trace_fan(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found)
+bool trace_fan(
+    const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fan)
 {
     RayFan fan;
     if (!prepare_fan(fan, mesh, rays, count, kAnyHit)) return false;
     FanWalk<kAnyHit> fan_walk(mesh, fan, rays, hits);
-    found = fan_walk.walk();
+    found_in_fan = fan_walk.walk();
+    if (mesh.walks != nullptr) mesh.walks->fans[kAnyHit].tell(!fan_walk.gave_up());
     if (!fan_walk.gave_up()) return true;
     if (!kAnyHit) { // rays that stand far apart among small triangles
         trace_apart<kAnyHit>(mesh, rays, count, hits);
-        found = 0;
-        for (unsigned i = 0; i < count; ++i)
-            found |= std::uint64_t{hits[i].primitive != TriangleBlock::kNone} << i;
+        found_in_fan = found(hits, count);
         return true;
     }
     Ray left[RayRun::kRays];
     unsigned from[RayRun::kRays];
     unsigned waiting = 0;
     const auto trace_left = [&]() HWY_ATTR {
-        for (std::uint32_t met = trace_run<kAnyHit>(mesh, left, waiting, hits); met != 0; met &= met - 1)
-            found |= std::uint64_t{1} << from[__builtin_ctz(met)];
+        for (std::uint64_t met = trace_run<kAnyHit>(mesh, left, waiting, hits); met != 0; met &= met - 1)
+            found_in_fan |= std::uint64_t{1} << from[__builtin_ctzll(met)];
         waiting = 0;
     };
     for (unsigned i = 0; i < count; ++i) {
-        if ((found >> i & 1) != 0) continue;
+        if ((found_in_fan >> i & 1) != 0) continue;
         left[waiting] = rays[i];
         from[waiting++] = i;
         if (waiting == RayRun::kRays) trace_left();
@@ -137,21 +142,25 @@ bool trace_fan(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* h
     return true;
 }
 
-// All as one fan, or run by run.
+// All as one fan, or run by run, or apart where that has been quicker.
 template <bool kAnyHit>
 std::uint64_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
     if (mesh.nodes == nullptr) return 0;
-    std::uint64_t found = 0;
-    if (trace_fan<kAnyHit>(mesh, rays, count, hits, found)) return found;
+    if (mesh.walks != nullptr && !mesh.walks->fans[kAnyHit].worth_trying(rays[0])) {
+        trace_apart<kAnyHit>(mesh, rays, count, hits);
+        return found(hits, count);
+    }
+    std::uint64_t met = 0;
+    if (trace_fan<kAnyHit>(mesh, rays, count, hits, met)) return met;
     for (unsigned first = 0; first < count; first += RayRun::kRays) {
         const unsigned some = std::min(RayRun::kRays, count - first);
         std::uint64_t in_run = 0;
         if (some == count || !trace_fan<kAnyHit>(mesh, rays + first, some, hits + first, in_run))
             in_run = trace_run<kAnyHit>(mesh, rays + first, some, hits + first);
-        found |= in_run << first;
+        met |= in_run << first;
     }
-    return found;
+    return met;
 }
 
 bool closest_hit(const MeshView& mesh, const Ray& ray, MeshHit& hit)

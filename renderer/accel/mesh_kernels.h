@@ -8,6 +8,7 @@
 
 #include "renderer/accel/box_rays.h"
 #include "renderer/accel/mesh_hit.h"
+#include "renderer/accel/shared_walks.h"
 #include "renderer/accel/triangle_block.h"
 #include "renderer/accel/wide_bvh.h"
 #include "renderer/geometry/ray.h"
@@ -28,6 +29,7 @@ struct MeshView {
     // What double arithmetic on a corner is off by, times 2^49: its size, and much more where the corners that the
     // kernels see lack residuals.
     double blur = 0;
+    MeshWalks* walks = nullptr; // which ways have paid; none: all are tried
 };
 
 struct MeshKernels {

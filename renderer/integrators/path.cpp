@@ -24,7 +24,6 @@ struct Path {
     std::uint32_t depth = 0; // scatterings so far
     double pdf = 0; // of its last direction; 0: no light was sampled there, what it finds counts in full
     Vec3d from{};   // the last scattering
-    bool is_first = true;     // the camera's own ray
     bool is_indirect = false; // it has been scattered by more than mirrors and panes
     Media media{};
 };
@@ -110,9 +109,10 @@ private:
         // What is seen after a bounce is not filtered: scattering has spread it over the samples.
         const double width = path.depth == 0 ? scene_.camera().width_at(hit.t) : 0;
         turn.surface = scene_.surface_at(hit, toward_viewer, &turn.room, width);
-        if (path.is_first && scene_.sky() != nullptr) add_air(path, hit.t);
-        path.is_first = false;
-        if (path.media.here() != nullptr) path.weight = path.weight * transmittance(path.media, hit.t);
+        if (path.media.here() != nullptr)
+            path.weight = path.weight * transmittance(path.media, hit.t);
+        else if (!path.is_indirect && scene_.sky() != nullptr)
+            add_air(path, hit.t);
         const Bsdf& bsdf = *turn.surface.bsdf;
         if (!is_black(bsdf.emission)) {
             add(path, bsdf.emission * static_cast<float>(share_of_emission(path, hit)));

@@ -13,7 +13,8 @@ Rgb background(const Scene& scene, Vec3d direction, double drawn_pdf);
 // What is left of light after `way` metres of what fills the place.
 Rgb transmittance(const Media& media, double way);
 
-// What the air before a camera ray's hit at `distance` leaves of it, and adds: all and nothing where air does not count.
+// What the air before a hit at `distance` leaves of it, and adds: all and nothing where air does not count. For rays from the
+// camera, and from mirrors and panes as if they came from it.
 SkyLight::Between air_before(const Scene& scene, const Ray& ray, double distance);
 
 // Unit direction in which a mirror or the smooth boundary of glass sends a ray on; in double, since errors of a

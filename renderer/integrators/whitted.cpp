@@ -20,7 +20,6 @@ struct Branch {
     const CameraSample* of = nullptr;
     std::size_t sample = 0;
     std::uint32_t depth = 0; // scatterings so far
-    bool is_first = true;    // the camera's own ray
     Media media{};
 };
 
@@ -97,14 +96,13 @@ private:
         // What is seen in mirrors and through panes is not filtered.
         const double width = branch.depth == 0 ? scene_.camera().width_at(hit.t) : 0;
         Surface& surface = surfaces_[i] = scene_.surface_at(hit, toward_viewer, &rooms_[i], width);
-        if (branch.is_first && scene_.sky() != nullptr) {
+        if (branch.media.here() != nullptr) {
+            branch.weight = branch.weight * transmittance(branch.media, hit.t);
+        } else if (scene_.sky() != nullptr) {
             const SkyLight::Between air = air_before(scene_, branch.ray, hit.t);
             radiance_[branch.sample] += branch.weight * air.added;
             branch.weight = branch.weight * air.transmittance;
         }
-        branch.is_first = false;
-        if (branch.media.here() != nullptr)
-            branch.weight = branch.weight * transmittance(branch.media, hit.t);
         found_[i] = surface.bsdf->emission + surface.bsdf->ambient;
         if (surface.bsdf->kind == BsdfKind::black) return false;
         wo_[i] = surface.shading.to_local(to_float(toward_viewer));

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <variant>
 
@@ -46,6 +47,42 @@ Depth depth_of(const SceneDescription& scene, std::span<const MeshFacts> meshes)
     for (const Light& light : scene.lights)
         if (const std::optional<LightShape> shaped = shape_of(light)) look_at(shaped->object);
     return depth;
+}
+
+bool is_mirror_or_pane(const Material& material)
+{
+    const auto is_smooth = [](const TexturedNumber& roughness) {
+        return !roughness.texture && roughness.value == 0;
+    };
+    if (const auto* const glass = std::get_if<GlassMaterial>(&material)) return is_smooth(glass->roughness);
+    if (const auto* const metal = std::get_if<ConductorMaterial>(&material))
+        return is_smooth(metal->roughness);
+    if (const auto* const varnish = std::get_if<CookTorranceMaterial>(&material))
+        return is_smooth(varnish->roughness);
+    return std::holds_alternative<MirrorMaterial>(material);
+}
+
+// The share of what the air does by which it is off behind mirrors and panes, where rays are taken as if they came from the
+// eye: by the height between them, and the turn of the vertical. Negative: there are no such things.
+double
+most_off_behind_mirrors(const SceneDescription& scene, std::span<const MeshFacts> meshes, const Air& air)
+{
+    const auto scatters = [](double x) { return x > 0; };
+    double scale_height = std::numeric_limits<double>::infinity();
+    if (std::any_of(air.rayleigh.begin(), air.rayleigh.end(), scatters)) scale_height = air.rayleigh_height_m;
+    if (std::any_of(air.mie_extinction.begin(), air.mie_extinction.end(), scatters))
+        scale_height = std::min(scale_height, air.mie_height_m);
+    const Vec3d eye = scene.camera->position;
+    double most = -1;
+    for (const ObjectDescription& object : scene.objects) {
+        if (!object.material || !is_mirror_or_pane(scene.materials[*object.material].material)) continue;
+        if (object_bounds(object.shape, meshes).empty()) continue;
+        for (const Vec3d& corner : world_corners(object, meshes)) {
+            const double up = (corner.y - eye.y) / scale_height, turn = length(corner - eye) / air.radius_m;
+            most = std::max(most, (up > 0 ? exp(std::min(up, 700.0)) - 1 : 1 - exp(up)) + turn);
+        }
+    }
+    return most;
 }
 
 // Extinction per metre at the wavelength nearest to 550 nm, at most, from an altitude upwards.
@@ -86,8 +123,8 @@ std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
                                   "of a clear sky's irradiance, nearly all of twilight"});
 
     const Depth depth = depth_of(scene, meshes);
-    const double bound =
-        1 - exp(-most_extinction(make_air(*a), a->altitude_m + depth.lowest_m) * depth.far_m);
+    const Air air = make_air(*a);
+    const double bound = 1 - exp(-most_extinction(air, a->altitude_m + depth.lowest_m) * depth.far_m);
     const std::string seen = number_in_words(depth.far_m) + " m away at most: the air before it takes " +
                              number_in_words(100 * bound) + " % at 550 nm at most";
     if (!a->aerial_perspective)
@@ -97,8 +134,13 @@ std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
             {"aerial_perspective", "bound " + number_in_words(bound) + ": things are " + seen});
     else {
         plan.far_m = depth.far_m;
+        const double off = most_off_behind_mirrors(scene, meshes, air);
         models.used.push_back(
-            {"aerial_perspective", "things are " + seen + "; between camera and things, not between things"});
+            {"aerial_perspective",
+             "things are " + seen + "; between camera and things, not between things" +
+                 (off < 0 ? std::string()
+                          : "; behind mirrors and panes as if seen from the camera, off by " +
+                                number_in_words(100 * off) + " % of its effect at most")});
     }
     return plan;
 }

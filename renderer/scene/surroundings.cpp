@@ -53,6 +53,23 @@ std::shared_ptr<const SkyLight> sky_light(const SceneDescription& scene,
         air, std::move(sky), scene.camera->position, plan.sky->far_m, pool);
 }
 
+namespace {
+
+// Of squares of `side` pixels.
+std::vector<Rgb> means_of(const SkyPanorama& picture, std::size_t side)
+{
+    const std::size_t width = picture.width / side, height = picture.height / side;
+    std::vector<Rgb> means(width * height);
+    for (std::size_t y = 0; y < picture.height; ++y)
+        for (std::size_t x = 0; x < picture.width; ++x)
+            means[y / side * width + x / side] += picture.pixels[y * picture.width + x];
+    for (Rgb& mean : means)
+        mean = mean / static_cast<float>(side * side);
+    return means;
+}
+
+} // namespace
+
 std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool& pool, SceneLights& lights)
 {
     const Vec3d travels = -sky.sun_direction();
@@ -67,8 +84,11 @@ std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool
         lights.first_sun_is_of_sky = true;
     }
     constexpr std::uint32_t kWidth = 512, kHeight = 256;
-    SkyPanorama picture = sky.panorama(kWidth, kHeight, pool);
-    return std::make_shared<const EnvironmentMap>(kWidth, kHeight, std::move(picture.pixels), 0);
+    // From space the planet may be a few texels wide: each is the mean of what it covers.
+    const std::uint32_t finer = sky.is_beyond_air() ? 4 : 1;
+    SkyPanorama picture = sky.panorama(kWidth * finer, kHeight * finer, pool);
+    return std::make_shared<const EnvironmentMap>(
+        kWidth, kHeight, finer == 1 ? std::move(picture.pixels) : means_of(picture, finer), 0);
 }
 
 Media media_around(Vec3d point,

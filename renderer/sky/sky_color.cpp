@@ -74,6 +74,7 @@ SkyColor::SkyColor(const std::vector<double>& wavelengths_nm, Rgb irradiance)
         lanes[0][w % kLanes] = all.r;
         lanes[1][w % kLanes] = all.g;
         lanes[2][w % kLanes] = all.b;
+        columns_.push_back(Lanes{all.r, all.g, all.b, 0});
     }
 }
 

@@ -13,6 +13,7 @@
 #include "renderer/sky/lanes.h"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace renderer {
@@ -26,6 +27,14 @@ public:
     [[nodiscard]] Rgb operator()(const Spectrum& spectrum) const;
     // The same of groups of wavelengths as look-ups give them: no double, no bounds.
     [[nodiscard]] Rgb of_lanes(const Lanes* groups) const;
+    // As lanes (red, green, blue, 0), also below 0, of groups `stride` apart: linear, to be added up before it is cut.
+    [[nodiscard]] Lanes mix(const Lanes* groups, std::size_t stride) const
+    {
+        Lanes sum{};
+        for (std::size_t w = 0; w < columns_.size(); ++w)
+            sum += columns_[w] * splat(groups[w / kLanes * stride][w % kLanes]);
+        return sum;
+    }
     // A share that is taken or left, without the irradiance: of white, white is left.
     [[nodiscard]] Rgb share(const Spectrum& spectrum) const;
     [[nodiscard]] Rgb share_of_lanes(const Lanes* groups) const;
@@ -33,6 +42,7 @@ public:
 private:
     std::vector<std::array<double, 3>> weight_; // one a wavelength; each channel sums to 1
     std::vector<std::array<Lanes, 3>> lanes_;   // the same times the irradiance, [group]
+    std::vector<Lanes> columns_;                // and [wavelength] (red, green, blue, 0)
     Rgb irradiance_;
 };
 

@@ -6,6 +6,7 @@
 #include "renderer/sky/optical_depth.h"
 #include "renderer/sky/phase.h"
 #include "renderer/sky/single_scattering.h"
+#include "renderer/sky/sky_rows.h"
 #include "renderer/sky/sky_sun.h"
 
 #include <algorithm>
@@ -243,33 +244,23 @@ SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
 SkyPanorama SkyLight::panorama(std::size_t width, std::size_t height, ThreadPool& pool) const
 {
     SkyPanorama picture{width, height, std::vector<Rgb>(width * height)};
-    std::vector<double> easts(width), norths(width);
-    std::vector<float> azimuths(width);
+    std::vector<double> easts(width), norths(width), cosines(width);
     for (std::size_t x = 0; x < width; ++x) {
         std::tie(easts[x], norths[x]) =
             sin_cos_deg(360 * ((static_cast<double>(x) + 0.5) / static_cast<double>(width) - 0.5));
-        azimuths[x] =
-            static_cast<float>(std::clamp(easts[x] * sunwards_.x - norths[x] * sunwards_.z, -1.0, 1.0));
+        cosines[x] = std::clamp(easts[x] * sunwards_.x - norths[x] * sunwards_.z, -1.0, 1.0);
     }
-    const bool is_upright = up_.y == 1; // then a row has one angle to the vertical
-    const std::size_t groups = lane_groups(sky_->air().wavelengths);
+    std::optional<SkyRows> rows;
+    if (up_.y == 1) rows.emplace(*view_, color_, cosines); // a row has one angle to the vertical
     pool.run(height, [&](std::size_t y, unsigned) {
         const auto [sine, cosine] =
             sin_cos_deg(90 - 180 * (static_cast<double>(y) + 0.5) / static_cast<double>(height));
         Rgb* const pixels = &picture.pixels[y * width];
-        if (!is_upright) {
+        if (rows)
+            rows->fill(sine, pixels);
+        else
             for (std::size_t x = 0; x < width; ++x)
                 pixels[x] = radiance({cosine * easts[x], sine, -cosine * norths[x]});
-            return;
-        }
-        SkyView::Row row;
-        view_->row(sine, row);
-        std::array<Lanes, lane_groups(kMostWavelengths)> light{};
-        for (std::size_t x = 0; x < width; ++x) {
-            for (std::size_t g = 0; g < groups; ++g)
-                light[g] = row.radiance(g, azimuths[x]);
-            pixels[x] = color_.of_lanes(light.data());
-        }
     });
     return picture;
 }

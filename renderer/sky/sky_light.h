@@ -68,6 +68,7 @@ public:
     [[nodiscard]] SkyPanorama panorama(std::size_t width, std::size_t height, ThreadPool& pool) const;
 
     [[nodiscard]] const Sky& sky() const { return *sky_; }
+    [[nodiscard]] bool is_beyond_air() const { return altitude_ > sky_->air().height_m; } // the eye
 
     // Of radiance() against quadrature in 64 directions that have air or ground: root mean square over the mean, the
     // worst wavelength's. Rows and columns are doubled until it is below kTableError, twice at most.

@@ -14,10 +14,6 @@
 
 namespace renderer {
 
-namespace {
-constexpr std::size_t kParts = 3;
-}
-
 SkyView::SkyView(const Air& air,
                  const ColumnTable& columns,
                  const ScatteredLight* scattered,
@@ -65,38 +61,15 @@ void SkyView::fill(std::size_t index, const ScatteredLight* scattered)
     }
 }
 
-template <typename Part>
-Lanes SkyView::lit(double mu, float sine, float azimuth_cosine, const Part& part) const
+bool SkyView::row(double mu, Lanes* light) const
 {
-    const double nu = mu * mu_sun_ + static_cast<double>(sine * azimuth_cosine) * sun_sine_;
-    const double turned = std::clamp(nu, -1.0, 1.0);
-    return part(0) * splat(static_cast<float>(rayleigh_phase(turned))) +
-           part(1) * splat(static_cast<float>(mie_phase(air_.phase, air_.g, turned))) + part(2);
-}
-
-void SkyView::row(double mu, Row& row) const
-{
-    const std::size_t width = size_.azimuths * groups_ * kParts;
-    row.view_ = this;
-    row.mu_ = static_cast<float>(mu);
-    row.sine_ = static_cast<float>(std::sqrt(std::max(0.0, (1 - mu) * (1 + mu))));
-    row.light_.assign(width, Lanes{});
     ViewRows::Place place;
-    if (!rows_.find(mu, place)) return;
+    if (!rows_.find(mu, place)) return false;
+    const std::size_t width = size_.azimuths * groups_ * kParts;
     const Lanes* const low = &light_[place.row * width];
     for (std::size_t i = 0; i < width; ++i)
-        row.light_[i] = low[i] + (low[i + width] - low[i]) * splat(place.share);
-}
-
-Lanes SkyView::Row::radiance(std::size_t group, float azimuth_cosine) const
-{
-    const SkyView& view = *view_;
-    const AnglePlace at = angle_place(arc_cosine(azimuth_cosine), view.size_.azimuths);
-    const std::size_t step = view.groups_ * kParts;
-    const Lanes* const low = &light_[at.column * step + group * kParts];
-    return view.lit(static_cast<double>(mu_), sine_, azimuth_cosine, [&](std::size_t part) {
-        return low[part] + (low[step + part] - low[part]) * splat(at.share);
-    });
+        light[i] = low[i] + (low[i + width] - low[i]) * splat(place.share);
+    return true;
 }
 
 void SkyView::radiance(double mu, float azimuth_cosine, Lanes* groups) const
@@ -107,15 +80,19 @@ void SkyView::radiance(double mu, float azimuth_cosine, Lanes* groups) const
     const AnglePlace at = angle_place(arc_cosine(azimuth_cosine), size_.azimuths);
     const std::size_t step = groups_ * kParts, width = size_.azimuths * step;
     const auto sine = static_cast<float>(std::sqrt(std::max(0.0, (1 - mu) * (1 + mu))));
+    const double nu =
+        std::clamp(mu * mu_sun_ + static_cast<double>(sine * azimuth_cosine) * sun_sine_, -1.0, 1.0);
+    const Lanes rayleigh = splat(static_cast<float>(rayleigh_phase(nu))),
+                mie = splat(static_cast<float>(mie_phase(air_.phase, air_.g, nu)));
     for (std::size_t g = 0; g < groups_; ++g) {
         const Lanes* const low = &light_[place.row * width + at.column * step + g * kParts];
         const Lanes* const high = low + width;
-        groups[g] = lit(mu, sine, azimuth_cosine, [&](std::size_t part) {
-            const Lanes left = low[part] + (high[part] - low[part]) * splat(place.share);
-            const Lanes right =
-                low[step + part] + (high[step + part] - low[step + part]) * splat(place.share);
+        const auto part = [&](std::size_t i) {
+            const Lanes left = low[i] + (high[i] - low[i]) * splat(place.share);
+            const Lanes right = low[step + i] + (high[step + i] - low[step + i]) * splat(place.share);
             return left + (right - left) * splat(at.share);
-        });
+        };
+        groups[g] = part(0) * rayleigh + part(1) * mie + part(2);
     }
 }
 

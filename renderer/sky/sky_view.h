@@ -40,26 +40,20 @@ public:
     [[nodiscard]] Spectrum radiance(double mu, double azimuth_cosine) const;
     // The same in groups of four wavelengths, as many as the air has.
     void radiance(double mu, float azimuth_cosine, Lanes* groups) const;
-    // The same mu for many directions, as in a row of a panorama.
-    class Row {
-    public:
-        [[nodiscard]] Lanes radiance(std::size_t group, float azimuth_cosine) const;
+    // All azimuths of the table at one mu, [azimuth][group][rayleigh, mie, multiple], without the phase functions, as rows
+    // of a panorama want them. False where there is nothing to be seen; then nothing is written.
+    static constexpr std::size_t kParts = 3;
+    bool row(double mu, Lanes* light) const;
 
-    private:
-        friend class SkyView;
-        const SkyView* view_ = nullptr;
-        float mu_ = 0, sine_ = 0;
-        std::vector<Lanes> light_; // [azimuth][group][rayleigh, mie, multiple]
-    };
-    void row(double mu, Row& row) const;
-
+    [[nodiscard]] const Air& air() const { return air_; }
+    [[nodiscard]] std::size_t azimuths() const { return size_.azimuths; }
+    [[nodiscard]] std::size_t groups() const { return groups_; }
+    [[nodiscard]] double mu_sun() const { return mu_sun_; }
+    [[nodiscard]] double sun_sine() const { return sun_sine_; }
     [[nodiscard]] const ViewRows& rows() const { return rows_; }
 
 private:
     void fill(std::size_t index, const ScatteredLight* scattered);
-    // Of mu, the sine to it, and the three parts at that direction.
-    template <typename Part>
-    [[nodiscard]] Lanes lit(double mu, float sine, float azimuth_cosine, const Part& part) const;
 
     const Air& air_;
     const ColumnTable& columns_;

@@ -20,23 +20,39 @@ protected:
     // The run's answers are those of its rays, one by one, from all triangles in turn.
     void expect_as_brute_force(const MeshBvh& bvh, std::span<const Ray> rays)
     {
-        MeshHit hits[kRun];
-        const std::uint64_t found = bvh.closest_hits(rays, hits, GetParam());
-        const std::uint64_t met = bvh.any_hits(rays, GetParam());
+        struct Answer {
+            MeshHit hits[kRun];
+            std::uint64_t found = 0, met = 0;
+        };
+        Answer answers[2]; // walks together, and what is done where they have not paid
+        for (const bool lost : {false, true}) {
+            bvh.walks() = {};
+            for (int i = 0; i < 64 && lost; ++i)
+                for (const std::size_t any : {0u, 1u}) {
+                    bvh.walks().fans[any].tell(false);
+                    bvh.walks().beams[any].tell(false);
+                }
+            Answer& answer = answers[lost ? 1 : 0];
+            answer.found = bvh.closest_hits(rays, answer.hits, GetParam());
+            answer.met = bvh.any_hits(rays, GetParam());
+        }
         expect_apart_as_brute_force(bvh, rays);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const auto expected = bvh.closest_hit_brute_force(rays[i]);
-            const bool hit = (found >> i & 1) != 0;
-            ASSERT_TRUE(same(hit ? std::optional(hits[i]) : std::nullopt, expected))
-                << "ray " << i << " of a run";
-            ASSERT_EQ((met >> i & 1) != 0, expected.has_value()) << "ray " << i << " of a run";
+            for (const Answer& answer : answers) {
+                const bool hit = (answer.found >> i & 1) != 0;
+                ASSERT_TRUE(same(hit ? std::optional(answer.hits[i]) : std::nullopt, expected))
+                    << "ray " << i << " of a run";
+                ASSERT_EQ((answer.met >> i & 1) != 0, expected.has_value()) << "ray " << i << " of a run";
+            }
             ASSERT_TRUE(same(bvh.closest_hit(rays[i], GetParam()), expected)) << "ray " << i << " alone";
             ASSERT_EQ(bvh.any_hit(rays[i], GetParam()), expected.has_value()) << "ray " << i << " alone";
             hits_ += expected.has_value();
             ++rays_;
         }
-        ASSERT_EQ((found | met) >> (rays.size() - 1) >> 1, std::uint64_t{0})
-            << "rays that are not there have hit";
+        for (const Answer& answer : answers)
+            ASSERT_EQ((answer.found | answer.met) >> (rays.size() - 1) >> 1, std::uint64_t{0})
+                << "rays that are not there have hit";
     }
 
     void expect_apart_as_brute_force(const MeshBvh& bvh, std::span<const Ray> rays)

@@ -1,11 +1,13 @@
 // Scenes under an atmosphere, against the sky itself.
 #include "renderer/math/transcendental.h"
+#include "renderer/sky/air.h"
 #include "renderer/sky/sky_light.h"
 #include "tests/support/render_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 using namespace renderer;
 using tests::render_description;
@@ -74,6 +76,30 @@ TEST(Atmosphere, LightsAHorizontalPlateByItsIrradiance)
         }
 }
 
+TEST(Atmosphere, OfASmallPlanetInTheSkyLightsByItsIrradiance)
+{
+    // From ten radii away the planet is eleven degrees wide.
+    ThreadPool pool(2);
+    const AtmosphereDescription air = atmosphere(60);
+    const double away = 10 * make_air(air).radius_m;
+    const SkyLight light(air, std::make_shared<const Sky>(air, pool), {0, away, 0}, 0, pool);
+    TestScene test = metered(
+        air, {0, away - 1, 0}, {0, 1, 0}); // at the underside of a plate, which the sun does not reach
+    add_plate(test, {0, away, 0}, 90, 4, {0.5f, 0.5f, 0.5f});
+    const MeterReading got = render_description(test).report.meter.value();
+    double irradiance = 0; // of rings about the vertical, and spokes
+    constexpr int kRings = 2000, kSpokes = 90;
+    const double widest = 0.01; // 1 - cosine, half a degree beyond the air's edge
+    for (int ring = 0; ring < kRings; ++ring)
+        for (int spoke = 0; spoke < kSpokes; ++spoke) {
+            const double down = 1 - widest * (ring + 0.5) / kRings, side = std::sqrt(1 - down * down);
+            const auto [s, c] = sin_cos_deg(360 * (spoke + 0.5) / kSpokes);
+            irradiance += down * static_cast<double>(light.radiance({side * c, -down, side * s}).g);
+        }
+    irradiance *= 2 * kPi * widest / (kRings * kSpokes);
+    EXPECT_NEAR(got.value.g / (0.5 * irradiance / kPi), 1, 0.01);
+}
+
 TEST(Atmosphere, IsSeenAsTheSkyHasIt)
 {
     ThreadPool pool(2);
@@ -113,6 +139,58 @@ TEST(Atmosphere, AddsAirBeforeADistantBlackWall)
         const Rgb added = light.between({0, 100, 0}, {0, 100, -20'000}).added;
         EXPECT_NEAR(got.value.b, counts ? added.b : 0, 0.01f * added.b);
     }
+}
+
+TEST(Atmosphere, AddsAirBeforeADistantWallThatAMirrorOrAPaneShows)
+{
+    ThreadPool pool(2);
+    const AtmosphereDescription air = atmosphere(40);
+    const Rgb added = SkyLight(air, pool).between({0, 100, 0}, {0, 100, -20'000}).added;
+    for (const TransportType type : {TransportType::path, TransportType::whitted})
+        for (const bool mirror : {true, false}) {
+            TestScene test = metered(air, {0, 100, 0}, mirror ? Vec3d{0, -1, 0} : Vec3d{0, 0, -1});
+            test.description.transport.type = type;
+            add_plate(test, {0, 100, -20'000}, 0, 1000, {});
+            if (mirror)
+                test.description.materials.push_back({"mirror", MirrorMaterial{}});
+            else
+                test.description.materials.push_back({"pane", GlassMaterial{.ior = 1}});
+            ObjectDescription& before = test.description.objects.emplace_back();
+            before.material = 1;
+            if (mirror) {
+                before.shape = RectangleShape{1, 1};
+                const auto [s, c] = sin_cos_deg(-45); // looked at from above it shows what lies along -z
+                before.world_from_object.rows[1] = {0, c, -s};
+                before.world_from_object.rows[2] = {0, s, c};
+                before.world_from_object.translation = {0, 98, 0};
+            } else {
+                before.shape = BoxShape{{1, 1, 0.1}};
+                before.world_from_object.translation = {0, 100, -2};
+            }
+            const MeterReading got = render_description(test).report.meter.value();
+            EXPECT_NEAR(got.value.b, added.b, 0.01f * added.b) << mirror;
+            EXPECT_NEAR(got.value.r, added.r, 0.01f * added.r) << mirror;
+        }
+}
+
+TEST(Atmosphere, SaysHowFarTheAirIsOffBehindMirrors)
+{
+    ThreadPool pool(1);
+    const auto why = [&](double height) {
+        TestScene test = metered(atmosphere(40), {0, 100, 0}, {0, 0, -1});
+        add_plate(test, {0, 100, -20'000}, 0, 1000, {});
+        test.description.materials.push_back({"mirror", MirrorMaterial{}});
+        ObjectDescription& mirror = test.description.objects.emplace_back();
+        mirror.shape = SphereShape{1};
+        mirror.material = 1;
+        mirror.world_from_object.translation = {0, height, -5};
+        for (const ModelChoice& model : tests::make_ready(test, pool).plan.models.used)
+            if (model.name == "aerial_perspective") return model.why;
+        return std::string();
+    };
+    EXPECT_NE(why(100).find("off by 0.08"), std::string::npos) << why(100);
+    EXPECT_NE(why(219).find("off by 10.5"), std::string::npos)
+        << why(219); // 120 m of a scale height of 1200 m
 }
 
 TEST(Atmosphere, ThatNobodySeesThroughFarIsLeftOutBeforeThings)
