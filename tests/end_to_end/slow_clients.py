@@ -6,8 +6,8 @@ Usage: slow_clients.py BIN [HEADERS BODIES READERS]
 Opens HEADERS connections that drip a header, BODIES that drip a body (every second one a large one) and READERS that
 fetch a large asset and do not read, from five addresses of this machine. Meanwhile another client asks /healthz on both
 ports, submits jobs and fetches documents. Prints latencies, memory, and when the crowd was dropped; fails when an
-answer is wrong, when the crowd outlives its deadlines, or when it costs more than 32 MiB. Latencies are figures, not
-conditions: they are the machine's too.
+answer is wrong, when the crowd outlives its deadlines, or when it costs more than 32 MiB (unless SANITIZED is in the
+environment). Latencies are figures, not conditions: they are the machine's too.
 """
 import http.client
 import json
@@ -184,7 +184,9 @@ def run(service, port, health, headers, bodies, readers):
         sys.exit(f"FAILED: {crowd.here()} slow senders are still there after {PATIENCE_S} s")
     if cut != readers:
         sys.exit("FAILED: who does not read was served to the end")
-    if most - before > 32 * MIB:
+    if "SANITIZED" in os.environ:  # its programs hold what was freed, and shadows of the rest
+        print("  memory is not judged: a sanitizer takes more than the crowd")
+    elif most - before > 32 * MIB:
         sys.exit("FAILED: the crowd cost more than 32 MiB")
     if len(os.listdir(f"/proc/{service.pid}/fd")) > 100:
         sys.exit("FAILED: descriptors of the crowd are still open")
