@@ -97,6 +97,8 @@ public:
     // Too many leaves met the fan: of rays that have not hit nothing is known, nor of any whose nearest hit was
     // asked for.
     HWY_INLINE bool gave_up() const { return leaves_ > fan_.most_leaves; }
+    // Enough of them to tell whether the walk paid.
+    HWY_INLINE bool met_many() const { return leaves_ >= fan_.most_leaves / 4; }
 
     // Bit i: ray i hit.
     HWY_INLINE std::uint64_t walk()

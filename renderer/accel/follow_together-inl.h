@@ -141,8 +141,10 @@ public:
     {
     }
 
-    // False where a leaf that the beam met concerned hardly more than one of its rays, and there were many.
-    HWY_INLINE bool paid() const { return leaves_ < 64 || rays_in_leaves_ >= 2 * leaves_; }
+    // Whether a leaf that the beam met concerned one of its rays at least.
+    HWY_INLINE bool paid() const { return rays_in_leaves_ >= leaves_; }
+    // Enough of them to tell whether the walk paid.
+    HWY_INLINE bool met_many() const { return leaves_ >= 16; }
 
     HWY_INLINE void walk()
     {

@@ -103,7 +103,7 @@ std::uint64_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, M
         hits[i] = {std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
     PacketWalk<kAnyHit> walk(mesh, run, hits);
     walk.walk();
-    if (beams != nullptr) beams->tell(walk.paid());
+    if (beams != nullptr && walk.met_many()) beams->tell(walk.paid());
     for (unsigned i = 0; i < count; ++i)
         hits[i].t *= run.ray_units[i];
     return found(hits, count);
@@ -117,7 +117,7 @@ bool trace_fan(
     if (!prepare_fan(fan, mesh, rays, count, kAnyHit)) return false;
     FanWalk<kAnyHit> fan_walk(mesh, fan, rays, hits);
     found_in_fan = fan_walk.walk();
-    if (mesh.walks != nullptr) mesh.walks->fans[kAnyHit].tell(!fan_walk.gave_up());
+    if (mesh.walks != nullptr && fan_walk.met_many()) mesh.walks->fans[kAnyHit].tell(!fan_walk.gave_up());
     if (!fan_walk.gave_up()) return true;
     if (!kAnyHit) { // rays that stand far apart among small triangles
         trace_apart<kAnyHit>(mesh, rays, count, hits);

@@ -6,6 +6,7 @@
 
 #include "renderer/geometry/ray.h"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstdint>
@@ -24,14 +25,14 @@ public:
     {
         const std::atomic_ref lost(lost_);
         const std::uint32_t before = lost.load(std::memory_order_relaxed);
-        const std::uint32_t after = paid ? before - (before > 0 ? 1 : 0) : before + (before < kMost ? 2 : 0);
+        const std::uint32_t after = paid ? before - std::min(before, kPaid) : std::min(before + 1, kMost);
         if (after != before)
             lost.store(after, std::memory_order_relaxed); // no line is taken from others in vain
     }
 
 private:
-    // A walk that did not pay counts two: with two lost of three one stops trying.
-    static constexpr std::uint32_t kMany = 24, kMost = 32;
+    // One that paid makes up for four that did not: where a fifth of them pay, they are all tried.
+    static constexpr std::uint32_t kPaid = 4, kMany = 128, kMost = 160;
 
     alignas(std::atomic_ref<std::uint32_t>::required_alignment) mutable std::uint32_t lost_ = 0;
 };

@@ -27,7 +27,7 @@ protected:
         Answer answers[2]; // walks together, and what is done where they have not paid
         for (const bool lost : {false, true}) {
             bvh.walks() = {};
-            for (int i = 0; i < 64 && lost; ++i)
+            for (int i = 0; i < 1000 && lost; ++i)
                 for (const std::size_t any : {0u, 1u}) {
                     bvh.walks().fans[any].tell(false);
                     bvh.walks().beams[any].tell(false);

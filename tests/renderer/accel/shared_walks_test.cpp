@@ -21,7 +21,7 @@ TEST(SharedWalks, AreTriedUntilTheyHaveBeenLostManyTimes)
 {
     SharedWalks walks;
     EXPECT_EQ(tried_of_1600(walks), 1600);
-    for (int i = 0; i < 6; ++i)
+    for (int i = 0; i < 100; ++i)
         walks.tell(false);
     EXPECT_EQ(tried_of_1600(walks), 1600);
 }
@@ -45,10 +45,10 @@ TEST(SharedWalks, AreTakenUpAgainOnceTheyPay)
     EXPECT_EQ(tried_of_1600(walks), 1600);
 }
 
-TEST(SharedWalks, GoOnWhereOneInFourIsLost)
+TEST(SharedWalks, GoOnWhereOneInFourPays)
 {
     SharedWalks walks;
     for (int i = 0; i < 1000; ++i)
-        walks.tell(i % 4 != 0);
+        walks.tell(i % 4 == 0);
     EXPECT_EQ(tried_of_1600(walks), 1600);
 }
