@@ -17,11 +17,8 @@ inline void append_text(Bytes& bytes, std::string_view text)
 
 inline void append_u32(Bytes& bytes, std::uint32_t value)
 {
-    const std::uint8_t four[]{static_cast<std::uint8_t>(value),
-                              static_cast<std::uint8_t>(value >> 8),
-                              static_cast<std::uint8_t>(value >> 16),
-                              static_cast<std::uint8_t>(value >> 24)};
-    bytes.insert(bytes.end(), four, four + 4);
+    for (int shift = 0; shift < 32; shift += 8)
+        bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
 inline void append_u64(Bytes& bytes, std::uint64_t value)

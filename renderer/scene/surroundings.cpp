@@ -55,16 +55,24 @@ std::shared_ptr<const SkyLight> sky_light(const SceneDescription& scene,
 
 namespace {
 
-// Of squares of `side` pixels.
-std::vector<Rgb> means_of(const SkyPanorama& picture, std::size_t side)
+// Of `finer` rows each, by their solid angles.
+std::vector<Rgb> means_of_rows(const SkyPanorama& picture, std::size_t finer)
 {
-    const std::size_t width = picture.width / side, height = picture.height / side;
-    std::vector<Rgb> means(width * height);
-    for (std::size_t y = 0; y < picture.height; ++y)
+    std::vector<Rgb> means(picture.pixels.size() / finer);
+    for (std::size_t row = 0; row < picture.height / finer; ++row) {
+        Rgb* const mean = &means[row * picture.width];
+        float sum = 0;
+        for (std::size_t y = row * finer; y < (row + 1) * finer; ++y) {
+            const auto weight = static_cast<float>(
+                sin_cos_deg(180 * (static_cast<double>(y) + 0.5) / static_cast<double>(picture.height))
+                    .first);
+            sum += weight;
+            for (std::size_t x = 0; x < picture.width; ++x)
+                mean[x] += picture.pixels[y * picture.width + x] * weight;
+        }
         for (std::size_t x = 0; x < picture.width; ++x)
-            means[y / side * width + x / side] += picture.pixels[y * picture.width + x];
-    for (Rgb& mean : means)
-        mean = mean / static_cast<float>(side * side);
+            mean[x] = mean[x] / sum;
+    }
     return means;
 }
 
@@ -84,11 +92,11 @@ std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool
         lights.first_sun_is_of_sky = true;
     }
     constexpr std::uint32_t kWidth = 512, kHeight = 256;
-    // From space the planet may be a few texels wide: each is the mean of what it covers.
-    const std::uint32_t finer = sky.is_beyond_air() ? 4 : 1;
-    SkyPanorama picture = sky.panorama(kWidth * finer, kHeight * finer, pool);
+    // From space the planet may be a few rows high, and its edge one of them all around.
+    const std::uint32_t finer = sky.is_beyond_air() ? 16 : 1;
+    SkyPanorama picture = sky.panorama(kWidth, kHeight * finer, pool);
     return std::make_shared<const EnvironmentMap>(
-        kWidth, kHeight, finer == 1 ? std::move(picture.pixels) : means_of(picture, finer), 0);
+        kWidth, kHeight, finer == 1 ? std::move(picture.pixels) : means_of_rows(picture, finer), 0);
 }
 
 Media media_around(Vec3d point,

@@ -159,7 +159,7 @@ TEST(Atmosphere, AddsAirBeforeADistantWallThatAMirrorOrAPaneShows)
             before.material = 1;
             if (mirror) {
                 before.shape = RectangleShape{1, 1};
-                const auto [s, c] = sin_cos_deg(-45); // looked at from above it shows what lies along -z
+                const auto [s, c] = sin_cos_deg(-135); // looked at from above it shows what lies along -z
                 before.world_from_object.rows[1] = {0, c, -s};
                 before.world_from_object.rows[2] = {0, s, c};
                 before.world_from_object.translation = {0, 98, 0};
