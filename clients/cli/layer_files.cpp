@@ -50,6 +50,7 @@ std::vector<LayerFile> read_layer_files(const std::vector<std::string>& words,
                                         std::optional<std::uint32_t> bits)
 {
     std::vector<LayerFile> files;
+    files.reserve(words.size());
     for (const std::string& word : words)
         files.push_back(read_layer_file(word, bits));
     return files;

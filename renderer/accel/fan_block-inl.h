@@ -33,7 +33,8 @@ struct FanBlock {
 // (3 roundings, at most kSteepest), and the two products and sums make less than 16 * 2^-24 |n|_1 together, also
 // where it is the corner of a group's bounds that is asked. Lines that pass `aside` from the apex shift edge
 // functions by less than 4 * aside * |edge|_1.
-HWY_INLINE void see_block(const RayFan& fan, const TriangleBlock& block, FanBlock& out)
+HWY_INLINE void
+see_block(const RayFan& fan, const TriangleBlock& block, FanBlock& out) // NOLINT(readability-function-size)
 {
     const hn::CappedTag<double, TriangleBlock::kLanes> d;
     const hn::Rebind<float, decltype(d)> f;

@@ -67,7 +67,7 @@ public:
     HWY_INLINE void bound_group(unsigned group)
     {
         const Group f;
-        const float* const ends = fan_.end + group * RayFan::kGroup;
+        const float* const ends = fan_.end + std::size_t{group} * RayFan::kGroup;
         auto most = hn::Load(f, ends);
         for (unsigned i = kGroupLanes; i < RayFan::kGroup; i += kGroupLanes)
             most = hn::Max(most, hn::Load(f, ends + i));
@@ -142,7 +142,7 @@ private:
 
     // As intersect_watertight does, operation for operation, for rays that prefer a triangle; what is special is
     // left to that.
-    HWY_INLINE void settle_some(const unsigned* rays, unsigned count)
+    HWY_INLINE void settle_some(const unsigned* rays, unsigned count) // NOLINT(readability-function-size)
     {
         const D d;
         const F f;

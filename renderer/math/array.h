@@ -34,7 +34,7 @@ public:
     Array() = default;
     explicit Array(std::size_t size) { resize(size); }
     Array(std::initializer_list<T> values) { append(values); }
-    explicit(false) Array(const std::vector<T>& values) { append(values); }
+    explicit(false) Array(const std::vector<T>& values) { append(values); } // NOLINT: implicit
     static Array lent(std::span<const T> values, std::shared_ptr<const void> keeper)
     {
         Array array;

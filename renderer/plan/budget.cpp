@@ -15,10 +15,9 @@ namespace renderer {
 namespace {
 
 // Sums and mean; the PNG and its copy; what is kept of both, in one piece, with what is packed of the mean.
-constexpr std::uint64_t kFilmBytesPerPixel = 3 * 8 + 3 * 4 + 3 + 3 + (3 + 12 + 12);
+constexpr std::uint64_t kFilmBytesPerPixel = 24 + 12 + 3 + 3 + (3 + 12 + 12);
 // Sums and mean of a layer, and what is packed of it: see film/layer_sums.h.
-constexpr std::array<std::uint64_t, kLayers.size()> kLayerBytesPerPixel{
-    16 + 2 * 4, 24 + 2 * 12, 24 + 2 * 12, 2 * 4};
+constexpr std::array<std::uint64_t, kLayers.size()> kLayerBytesPerPixel{16 + 8, 24 + 24, 24 + 24, 8};
 constexpr std::uint64_t kMeshBytesPerVertex = 12 + 12 + 8;
 constexpr std::uint64_t kMeshBytesPerTriangle = 12 + 2; // indices, material
 // 52 to 57 in meshes of many kinds, 65 where triangles are strewn points.
@@ -90,7 +89,7 @@ std::uint64_t sky_bytes(const AtmosphereDescription& a)
     const std::uint64_t scattered = a.scattering == SkyScattering::single ? 0
                                     : a.mode == SkyMode::exact            ? 81'000'000
                                                                           : 16'000'000;
-    constexpr std::uint64_t kViews = 6'000'000, kPictureBytes = 512 * 256 * kEnvironmentBytesPerPixel;
+    constexpr std::uint64_t kViews = 6'000'000, kPictureBytes = kEnvironmentBytesPerPixel * 512 * 256;
     return groups * (scattered + kViews) + kPictureBytes;
 }
 
@@ -137,7 +136,7 @@ bool is_on_surfaces(const SceneDescription& scene, std::uint32_t image)
 // Results of so few samples never fill the room that they may take.
 std::uint64_t merge_bytes(std::uint64_t pixels, const RenderSettings& settings)
 {
-    constexpr std::uint64_t kSumBytes = 3 * 8, kSamplesAtOnce = 4;
+    constexpr std::uint64_t kSumBytes = 24, kSamplesAtOnce = 4; // three doubles
     const QualitySettings& quality = settings.quality;
     const std::uint64_t samples =
         quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);

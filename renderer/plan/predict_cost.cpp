@@ -18,8 +18,8 @@ double table_seconds(const SceneDescription& scene, const TransportChoice& trans
     const auto* const air =
         scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr;
     if (air == nullptr || air->scattering == SkyScattering::single || !is_lit(transport.integrator)) return 0;
-    const auto groups = static_cast<double>((air->wavelengths_nm.size() + 3) / 4);
-    return groups * (air->mode == SkyMode::exact ? 11 : 1.5);
+    const std::size_t groups = (air->wavelengths_nm.size() + 3) / 4;
+    return static_cast<double>(groups) * (air->mode == SkyMode::exact ? 11 : 1.5);
 }
 
 double rays_a_sample(const SceneDescription& scene, const TransportChoice& transport)

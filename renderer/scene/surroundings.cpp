@@ -94,7 +94,7 @@ std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool
     constexpr std::uint32_t kWidth = 512, kHeight = 256;
     // From space the planet may be a few rows high, and its edge one of them all around.
     const std::uint32_t finer = sky.is_beyond_air() ? 16 : 1;
-    SkyPanorama picture = sky.panorama(kWidth, kHeight * finer, pool);
+    SkyPanorama picture = sky.panorama(kWidth, std::size_t{kHeight} * finer, pool);
     return std::make_shared<const EnvironmentMap>(
         kWidth, kHeight, finer == 1 ? std::move(picture.pixels) : means_of_rows(picture, finer), 0);
 }
