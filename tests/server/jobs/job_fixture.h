@@ -9,6 +9,7 @@
 #include "server/store/sqlite_store.h"
 #include "tests/support/places.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/thinning.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,8 @@
 
 namespace tests {
 
-inline constexpr std::chrono::seconds kPatience{60}; // for what must happen; never reached when all is well
+// For what must happen; never reached when all is well.
+inline constexpr std::chrono::seconds kPatience{60 * kSlowness};
 
 // One process's worth of service. What is on disk outlives it.
 class Node {
