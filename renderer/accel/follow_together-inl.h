@@ -141,11 +141,6 @@ public:
     {
     }
 
-    // Whether a leaf that the beam met concerned one of its rays at least.
-    HWY_INLINE bool paid() const { return rays_in_leaves_ >= leaves_; }
-    // Enough of them to tell whether the walk paid.
-    HWY_INLINE bool met_many() const { return leaves_ >= 16; }
-
     HWY_INLINE void walk()
     {
         struct Waiting {
@@ -190,8 +185,6 @@ private:
     HWY_INLINE bool visit_leaf(std::uint32_t code, std::uint32_t node, std::uint32_t child)
     {
         const unsigned active = rays_entering(p_, beam_, mesh_.nodes[node], child);
-        ++leaves_;
-        rays_in_leaves_ += static_cast<unsigned>(__builtin_popcount(active));
         if (active == 0) return false;
         bool drawn = false;
         const TriangleBlock* block = mesh_.leaves + (code & ChildCode::kNumber);
@@ -220,7 +213,7 @@ private:
     RayRun& p_;
     const Beam beam_;
     MeshHit* best_;
-    unsigned hit_ = 0, leaves_ = 0, rays_in_leaves_ = 0;
+    unsigned hit_ = 0;
 };
 
 } // namespace

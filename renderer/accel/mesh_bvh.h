@@ -7,8 +7,8 @@
 //            brought to the mesh's bounds, and pass whatever float cannot tell: they only save work. Hence
 //            every kind of tree, and no tree at all, gives the same hit to the last bit.
 // Ties       the least (t, primitive) wins.
-// Threads    immutable after build but for hints on which way is the quickest (shared_walks.h); rays may be traced from any
-//            number of threads.
+// Threads    immutable after build but for a hint on which way is the quickest (shared_walks.h); rays may be traced
+//            from any number of threads.
 #pragma once
 
 #include "renderer/accel/mesh_hit.h"
@@ -73,8 +73,8 @@ public:
     static std::optional<MeshBvh> from_bytes(const TreeBytes& bytes,
                                              const std::shared_ptr<const void>& keeper);
 
-    // Which ways have paid: to begin anew, for tests and for measuring.
-    MeshWalks& walks() const { return walks_; }
+    // Whether fans have paid: to begin anew, for tests and for measuring.
+    FanWalks& fans() const { return fans_; }
 
     const Bounds3f& bounds() const { return bounds_; } // of triangles with an area; empty if there is none
     std::uint64_t degenerate_triangles() const { return degenerate_; }
@@ -91,7 +91,7 @@ private:
                 bvh_.bounds,
                 scale_,
                 blur_,
-                &walks_};
+                &fans_};
     }
 
     WideBvh bvh_;                           // in scaled coordinates
@@ -101,7 +101,7 @@ private:
     double blur_ = 0; // MeshView's
     float scale_ = 1; // power of two that brings coordinates near 1 where they are far from it
     std::uint64_t degenerate_ = 0;
-    mutable MeshWalks walks_; // written while rays are traced: in a line of its own
+    mutable FanWalks fans_; // written while rays are traced: in a line of its own
 };
 
 } // namespace renderer

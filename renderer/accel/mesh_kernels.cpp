@@ -89,11 +89,8 @@ std::uint64_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, M
         trace_apart<kAnyHit>(mesh, rays, count, hits);
         return found(hits, count);
     }
-    SharedWalks* const beams = mesh.walks != nullptr ? &mesh.walks->beams[kAnyHit] : nullptr;
     RayRun run;
-    const Following how = beams != nullptr && !beams->worth_trying(rays[0])
-                              ? Following::apart
-                              : prepare_run(run, mesh, rays, count);
+    const Following how = prepare_run(run, mesh, rays, count);
     if (how == Following::none) return 0;
     if (how == Following::apart) {
         trace_apart<kAnyHit>(mesh, rays, count, hits);
@@ -101,9 +98,7 @@ std::uint64_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, M
     }
     for (unsigned i = 0; i < count; ++i)
         hits[i] = {std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
-    PacketWalk<kAnyHit> walk(mesh, run, hits);
-    walk.walk();
-    if (beams != nullptr && walk.met_many()) beams->tell(walk.paid());
+    PacketWalk<kAnyHit>(mesh, run, hits).walk();
     for (unsigned i = 0; i < count; ++i)
         hits[i].t *= run.ray_units[i];
     return found(hits, count);
@@ -117,7 +112,9 @@ bool trace_fan(
     if (!prepare_fan(fan, mesh, rays, count, kAnyHit)) return false;
     FanWalk<kAnyHit> fan_walk(mesh, fan, rays, hits);
     found_in_fan = fan_walk.walk();
-    if (mesh.walks != nullptr && fan_walk.met_many()) mesh.walks->fans[kAnyHit].tell(!fan_walk.gave_up());
+    // Rays that meet next to nothing in any case say nothing of the nearest hit's cost.
+    if (mesh.fans != nullptr && (kAnyHit || fan_walk.met_many()))
+        (kAnyHit ? mesh.fans->any : mesh.fans->nearest).tell(!fan_walk.gave_up());
     if (!fan_walk.gave_up()) return true;
     if (!kAnyHit) { // rays that stand far apart among small triangles
         trace_apart<kAnyHit>(mesh, rays, count, hits);
@@ -147,7 +144,7 @@ template <bool kAnyHit>
 std::uint64_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
     if (mesh.nodes == nullptr) return 0;
-    if (mesh.walks != nullptr && !mesh.walks->fans[kAnyHit].worth_trying(rays[0])) {
+    if (mesh.fans != nullptr && !(kAnyHit ? mesh.fans->any : mesh.fans->nearest).worth_trying(rays[0])) {
         trace_apart<kAnyHit>(mesh, rays, count, hits);
         return found(hits, count);
     }

@@ -29,7 +29,7 @@ struct MeshView {
     // What double arithmetic on a corner is off by, times 2^49: its size, and much more where the corners that the
     // kernels see lack residuals.
     double blur = 0;
-    MeshWalks* walks = nullptr; // which ways have paid; none: all are tried
+    FanWalks* fans = nullptr; // whether they have paid; none: all are tried
 };
 
 struct MeshKernels {

@@ -1,5 +1,5 @@
-// SharedWalks: whether one walk for many rays has paid lately in a mesh. Among triangles far smaller than the rays stand apart
-// it does not, and which meshes are looked at so is known only when they are.
+// SharedWalks: whether one walk for many rays through a point has paid lately in a mesh. Among triangles far smaller
+// than the rays stand apart it does not, and which meshes are looked at so is known only when they are.
 //
 // A hint, no more: every way gives the same hits. Threads: any number at once; an update may be lost.
 #pragma once
@@ -15,31 +15,38 @@ namespace renderer {
 
 class SharedWalks {
 public:
+    // What a walk that was lost weighs, and one that paid: where more are lost than these make up for, no more are
+    // tried.
+    constexpr SharedWalks(std::uint32_t lost, std::uint32_t paid) : lost_weight_(lost), paid_weight_(paid) {}
+
     // Where they have not paid, one time in sixteen, picked by the ray's digits: a view may change.
     [[nodiscard]] bool worth_trying(const Ray& first) const
     {
-        if (std::atomic_ref(lost_).load(std::memory_order_relaxed) < kMany) return true;
+        if (std::atomic_ref(balance_).load(std::memory_order_relaxed) < kMany) return true;
         return std::bit_cast<std::uint64_t>(first.direction.x) * 0x9E3779B97F4A7C15u >> 60 == 0;
     }
     void tell(bool paid)
     {
-        const std::atomic_ref lost(lost_);
-        const std::uint32_t before = lost.load(std::memory_order_relaxed);
-        const std::uint32_t after = paid ? before - std::min(before, kPaid) : std::min(before + 1, kMost);
+        const std::atomic_ref balance(balance_);
+        const std::uint32_t before = balance.load(std::memory_order_relaxed);
+        const std::uint32_t after =
+            paid ? before - std::min(before, paid_weight_) : std::min(before + lost_weight_, kMost);
         if (after != before)
-            lost.store(after, std::memory_order_relaxed); // no line is taken from others in vain
+            balance.store(after, std::memory_order_relaxed); // no line is taken from others in vain
     }
 
 private:
-    // One that paid makes up for four that did not: where a fifth of them pay, they are all tried.
-    static constexpr std::uint32_t kPaid = 4, kMany = 128, kMost = 160;
+    // Many in a row: hard corners lie together in meshes where most walks pay.
+    static constexpr std::uint32_t kMany = 1024, kMost = 1280;
 
-    alignas(std::atomic_ref<std::uint32_t>::required_alignment) mutable std::uint32_t lost_ = 0;
+    std::uint32_t lost_weight_, paid_weight_;
+    alignas(std::atomic_ref<std::uint32_t>::required_alignment) mutable std::uint32_t balance_ = 0;
 };
 
-// Of a mesh: of fans and of beams, each for nearest hits [0] and any [1].
-struct alignas(64) MeshWalks {
-    SharedWalks fans[2], beams[2];
+// Of the fans in a mesh, for the nearest hit and for any. A lost fan has found nothing of the nearest hits, and of any
+// hits some: these are worth trying where a ninth of them pay, those where two thirds do.
+struct alignas(64) FanWalks {
+    SharedWalks nearest{8, 4}, any{1, 8};
 };
 
 } // namespace renderer

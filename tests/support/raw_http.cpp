@@ -47,8 +47,9 @@ std::string HttpAnswer::header(const std::string& name) const
     return found == headers.end() ? std::string() : found->second;
 }
 
-RawConnection::RawConnection(int port, int receive_buffer, const char* from)
-    : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0))
+RawConnection::RawConnection() : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {}
+
+RawConnection::RawConnection(int port, int receive_buffer, const char* from) : RawConnection()
 {
     if (receive_buffer > 0) setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
     sockaddr_in own{};
@@ -56,11 +57,16 @@ RawConnection::RawConnection(int port, int receive_buffer, const char* from)
     const bool bound = inet_pton(AF_INET, from, &own.sin_addr) == 1 &&
                        bind(fd_, reinterpret_cast<sockaddr*>(&own), sizeof own) == 0;
     if (!bound) throw std::runtime_error(std::string("cannot connect from ") + from);
+    connect(port);
+}
+
+void RawConnection::connect(int port)
+{
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+    if (::connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
         throw std::runtime_error("cannot connect to port " + std::to_string(port));
 }
 

@@ -29,10 +29,12 @@ public:
     // `receive_buffer` > 0: a small window, for clients that read slowly. `from`: an address of this machine's
     // loopback, for clients that are several.
     explicit RawConnection(int port, int receive_buffer = 0, const char* from = "127.0.0.1");
+    RawConnection(); // a descriptor that is not connected yet: connect(), once
     ~RawConnection();
     RawConnection(const RawConnection&) = delete;
     RawConnection& operator=(const RawConnection&) = delete;
 
+    void connect(int port);
     // False when the server has closed.
     bool send(std::string_view bytes);
     // The next answer; 100 Continue is passed over. Nothing: closed without one. `head`: it has no body.

@@ -26,12 +26,11 @@ protected:
         };
         Answer answers[2]; // walks together, and what is done where they have not paid
         for (const bool lost : {false, true}) {
-            bvh.walks() = {};
-            for (int i = 0; i < 1000 && lost; ++i)
-                for (const std::size_t any : {0u, 1u}) {
-                    bvh.walks().fans[any].tell(false);
-                    bvh.walks().beams[any].tell(false);
-                }
+            bvh.fans() = {};
+            for (int i = 0; i < 1000 && lost; ++i) {
+                bvh.fans().nearest.tell(false);
+                bvh.fans().any.tell(false);
+            }
             Answer& answer = answers[lost ? 1 : 0];
             answer.found = bvh.closest_hits(rays, answer.hits, GetParam());
             answer.met = bvh.any_hits(rays, GetParam());

@@ -6,9 +6,14 @@ using namespace renderer;
 
 namespace {
 
-// Of many different rays, those that would be followed together.
-int tried_of_1600(const SharedWalks& walks)
+constexpr std::uint32_t kLost = 8, kPaid = 4; // a third of the walks may be lost
+
+// After `walked` walks more, each `of`th of which was lost: of 1600 different rays, those that would be followed
+// together.
+int tried_of_1600(SharedWalks& walks, int walked, int of)
 {
+    for (int i = 0; i < walked; ++i)
+        walks.tell(i % of != 0);
     int tried = 0;
     for (int i = 0; i < 1600; ++i)
         tried += walks.worth_trying(Ray{{0, 0, 0}, {0.1 + 0.001 * i, 0, 1}});
@@ -17,38 +22,44 @@ int tried_of_1600(const SharedWalks& walks)
 
 } // namespace
 
-TEST(SharedWalks, AreTriedUntilTheyHaveBeenLostManyTimes)
+TEST(SharedWalks, AreTriedUntilManyAreLostInARow)
 {
-    SharedWalks walks;
-    EXPECT_EQ(tried_of_1600(walks), 1600);
-    for (int i = 0; i < 100; ++i)
-        walks.tell(false);
-    EXPECT_EQ(tried_of_1600(walks), 1600);
+    SharedWalks walks(kLost, kPaid);
+    EXPECT_EQ(tried_of_1600(walks, 0, 1), 1600);
+    EXPECT_EQ(tried_of_1600(walks, 100, 1), 1600);
 }
 
 TEST(SharedWalks, ThatDoNotPayAreTriedNowAndThen)
 {
-    SharedWalks walks;
-    for (int i = 0; i < 1000; ++i)
-        walks.tell(false);
-    EXPECT_GT(tried_of_1600(walks), 50);
-    EXPECT_LT(tried_of_1600(walks), 200);
+    SharedWalks walks(kLost, kPaid);
+    const int tried = tried_of_1600(walks, 3000, 1);
+    EXPECT_GT(tried, 50);
+    EXPECT_LT(tried, 200);
 }
 
 TEST(SharedWalks, AreTakenUpAgainOnceTheyPay)
 {
-    SharedWalks walks;
-    for (int i = 0; i < 1000; ++i)
-        walks.tell(false);
-    for (int i = 0; i < 16; ++i)
-        walks.tell(true);
-    EXPECT_EQ(tried_of_1600(walks), 1600);
+    SharedWalks walks(kLost, kPaid);
+    EXPECT_LT(tried_of_1600(walks, 3000, 1), 200);
+    EXPECT_EQ(tried_of_1600(walks, 100, 1000), 1600);
 }
 
-TEST(SharedWalks, GoOnWhereOneInFourPays)
+TEST(SharedWalks, GoOnWhereAQuarterIsLost)
 {
-    SharedWalks walks;
-    for (int i = 0; i < 1000; ++i)
-        walks.tell(i % 4 == 0);
-    EXPECT_EQ(tried_of_1600(walks), 1600);
+    SharedWalks walks(kLost, kPaid);
+    EXPECT_EQ(tried_of_1600(walks, 30000, 4), 1600);
+}
+
+TEST(SharedWalks, StopWhereHalfIsLost)
+{
+    SharedWalks walks(kLost, kPaid);
+    EXPECT_LT(tried_of_1600(walks, 30000, 2), 200);
+}
+
+TEST(SharedWalks, ForAnyHitGoOnWhereASixthPays)
+{
+    SharedWalks walks = FanWalks().any;
+    for (int i = 0; i < 30000; ++i)
+        walks.tell(i % 6 == 0);
+    EXPECT_EQ(tried_of_1600(walks, 0, 1), 1600);
 }

@@ -642,11 +642,11 @@ TEST_F(Guarded, AcceptsAgainAfterItHadNoDescriptors)
 {
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
-    const int next = dup(0);
-    close(next);
-    const rlimit one_more{static_cast<rlim_t>(next) + 1, before.rlim_max};
-    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &one_more), 0);
-    RawConnection connection(port); // takes the last one
+    RawConnection connection;
+    // No number below the limit is free, whatever else opens a file meanwhile: malloc does for a new thread.
+    const rlimit none_more{3, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none_more), 0);
+    connection.connect(port);
     std::this_thread::sleep_for(milliseconds(100));
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
     ASSERT_TRUE(connection.send("GET / HTTP/1.1\r\nHost: a\r\n\r\n"));
