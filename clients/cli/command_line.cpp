@@ -90,13 +90,10 @@ void add_bits(CLI::App& command, std::optional<std::uint32_t>& bits)
 
 void add_layers(CLI::App& command, std::vector<std::string>& layers)
 {
-    std::string names;
-    for (const renderer::LayerEntry& entry : renderer::kLayers)
-        names.append(names.empty() ? "" : ", ").append(entry.name);
     command
         .add_option("--layer",
                     layers,
-                    "NAME=FILE, what is kept beside the picture: " + names +
+                    "NAME=FILE, what is kept beside the picture: " + names_of(renderer::kEveryLayer) +
                         "; .exr, .pfm, and .png of normal and albedo; may be repeated")
         ->take_all()
         ->allow_extra_args(false);

@@ -6,14 +6,6 @@
 namespace clients {
 namespace {
 
-std::string names_of_layers()
-{
-    std::string names;
-    for (const renderer::LayerEntry& entry : renderer::kLayers)
-        names.append(names.empty() ? "" : ", ").append(entry.name);
-    return names;
-}
-
 std::string extensions_of(renderer::Layer layer)
 {
     std::string extensions;
@@ -28,12 +20,14 @@ LayerFile read_layer_file(const std::string& word, std::optional<std::uint32_t> 
     const std::size_t equals = word.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == word.size())
         throw UserError(ExitCode::usage,
-                        "--layer " + word + ": write NAME=FILE, NAME being one of " + names_of_layers());
+                        "--layer " + word + ": write NAME=FILE, NAME being one of " +
+                            names_of(renderer::kEveryLayer));
     const std::string name = word.substr(0, equals), path = word.substr(equals + 1);
     const renderer::LayerEntry* const entry = renderer::find_layer(name);
     if (entry == nullptr)
         throw UserError(ExitCode::usage,
-                        "--layer " + word + ": there is no layer " + name + ", but " + names_of_layers());
+                        "--layer " + word + ": there is no layer " + name + ", but " +
+                            names_of(renderer::kEveryLayer));
     const renderer::PictureFormatEntry* const format =
         renderer::find_picture_extension(lower_extension(path));
     if (format == nullptr || !holds(format->format, entry->layer))

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace renderer {
@@ -82,5 +83,16 @@ struct LayerSet {
     constexpr void add(Layer layer) { bits |= 1u << static_cast<unsigned>(layer); }
     friend constexpr bool operator==(LayerSet, LayerSet) = default;
 };
+
+inline constexpr LayerSet kEveryLayer{(1u << kLayers.size()) - 1};
+
+// In words: "depth, normal"; empty for none.
+inline std::string names_of(LayerSet layers)
+{
+    std::string names;
+    for (const LayerEntry& entry : kLayers)
+        if (layers.has(entry.layer)) names.append(names.empty() ? "" : ", ").append(entry.name);
+    return names;
+}
 
 } // namespace renderer

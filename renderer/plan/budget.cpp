@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 #include <variant>
+#include <vector>
 
 namespace renderer {
 
@@ -119,15 +120,17 @@ void add_mesh(Budget& budget, const MeshFacts& mesh)
 
 namespace {
 
-// A picture of the surroundings alone has no levels.
-bool is_on_surfaces(const SceneDescription& scene, std::uint32_t image)
+// Of each image: a picture of the surroundings alone has no levels.
+std::vector<bool> are_on_surfaces(const SceneDescription& scene, std::size_t images)
 {
-    bool found = false;
+    std::vector<bool> found(images);
+    const auto find = [&](std::uint32_t image) {
+        if (image < images) found[image] = true;
+    };
     for (const NamedMaterial& named : scene.materials) {
-        const TextureUse* const tilt = normal_map_of(named.material);
-        found = found || (tilt != nullptr && tilt->image == image);
+        if (const TextureUse* const tilt = normal_map_of(named.material)) find(tilt->image);
         for_each_textured(named.material, [&](const auto& value) {
-            found = found || (value.texture && value.texture->image == image);
+            if (value.texture) find(value.texture->image);
         });
     }
     return found;
@@ -181,8 +184,9 @@ Budget predict(const SceneDescription& scene,
     if (const auto* const air =
             scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr)
         b.texture_bytes += sky_bytes(*air);
+    const std::vector<bool> on_surfaces = are_on_surfaces(scene, images.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
-        if (is_on_surfaces(scene, static_cast<std::uint32_t>(i)))
+        if (on_surfaces[i])
             add_image(b, images[i]);
         else
             b.texture_bytes += images[i].bytes;

@@ -146,11 +146,7 @@ private:
 
     void layers()
     {
-        std::string names;
-        for (const LayerEntry& entry : kLayers)
-            if (settings_.image.layers.has(entry.layer))
-                names.append(names.empty() ? "" : ", ").append(entry.name);
-        if (!names.empty())
+        if (const std::string names = names_of(settings_.image.layers); !names.empty())
             use("layers", names + ": `image.layers` asks for them; of what camera rays hit first anyway");
     }
 

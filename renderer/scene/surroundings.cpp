@@ -53,31 +53,6 @@ std::shared_ptr<const SkyLight> sky_light(const SceneDescription& scene,
         air, std::move(sky), scene.camera->position, plan.sky->far_m, pool);
 }
 
-namespace {
-
-// Of `finer` rows each, by their solid angles.
-std::vector<Rgb> means_of_rows(const SkyPanorama& picture, std::size_t finer)
-{
-    std::vector<Rgb> means(picture.pixels.size() / finer);
-    for (std::size_t row = 0; row < picture.height / finer; ++row) {
-        Rgb* const mean = &means[row * picture.width];
-        float sum = 0;
-        for (std::size_t y = row * finer; y < (row + 1) * finer; ++y) {
-            const auto weight = static_cast<float>(
-                sin_cos_deg(180 * (static_cast<double>(y) + 0.5) / static_cast<double>(picture.height))
-                    .first);
-            sum += weight;
-            for (std::size_t x = 0; x < picture.width; ++x)
-                mean[x] += picture.pixels[y * picture.width + x] * weight;
-        }
-        for (std::size_t x = 0; x < picture.width; ++x)
-            mean[x] = mean[x] / sum;
-    }
-    return means;
-}
-
-} // namespace
-
 std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool& pool, SceneLights& lights)
 {
     const Vec3d travels = -sky.sun_direction();
@@ -94,9 +69,8 @@ std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool
     constexpr std::uint32_t kWidth = 512, kHeight = 256;
     // From space the planet may be a few rows high, and its edge one of them all around.
     const std::uint32_t finer = sky.is_beyond_air() ? 16 : 1;
-    SkyPanorama picture = sky.panorama(kWidth, std::size_t{kHeight} * finer, pool);
-    return std::make_shared<const EnvironmentMap>(
-        kWidth, kHeight, finer == 1 ? std::move(picture.pixels) : means_of_rows(picture, finer), 0);
+    SkyPanorama picture = sky.panorama(kWidth, kHeight, pool, finer);
+    return std::make_shared<const EnvironmentMap>(kWidth, kHeight, std::move(picture.pixels), 0);
 }
 
 Media media_around(Vec3d point,

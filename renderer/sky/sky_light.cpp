@@ -241,7 +241,8 @@ SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
     return {color_.share(transmittance), color_(added)};
 }
 
-SkyPanorama SkyLight::panorama(std::size_t width, std::size_t height, ThreadPool& pool) const
+SkyPanorama
+SkyLight::panorama(std::size_t width, std::size_t height, ThreadPool& pool, std::size_t finer) const
 {
     SkyPanorama picture{width, height, std::vector<Rgb>(width * height)};
     std::vector<double> easts(width), norths(width), cosines(width);
@@ -252,15 +253,28 @@ SkyPanorama SkyLight::panorama(std::size_t width, std::size_t height, ThreadPool
     }
     std::optional<SkyRows> rows;
     if (up_.y == 1) rows.emplace(*view_, color_, cosines); // a row has one angle to the vertical
-    pool.run(height, [&](std::size_t y, unsigned) {
-        const auto [sine, cosine] =
-            sin_cos_deg(90 - 180 * (static_cast<double>(y) + 0.5) / static_cast<double>(height));
-        Rgb* const pixels = &picture.pixels[y * width];
+    const auto fill_row = [&](double sine, double cosine, Rgb* pixels) {
         if (rows)
             rows->fill(sine, pixels);
         else
             for (std::size_t x = 0; x < width; ++x)
                 pixels[x] = radiance({cosine * easts[x], sine, -cosine * norths[x]});
+    };
+    pool.run(height, [&](std::size_t y, unsigned) {
+        Rgb* const pixels = &picture.pixels[y * width];
+        std::vector<Rgb> part(finer > 1 ? width : 0);
+        double weights = 0;
+        for (std::size_t i = 0; i < finer; ++i) {
+            const double place = static_cast<double>(y * finer + i) + 0.5;
+            const auto [sine, cosine] = sin_cos_deg(90 - 180 * place / static_cast<double>(height * finer));
+            if (finer == 1) return fill_row(sine, cosine, pixels);
+            fill_row(sine, cosine, part.data());
+            weights += cosine;
+            for (std::size_t x = 0; x < width; ++x)
+                pixels[x] += part[x] * static_cast<float>(cosine);
+        }
+        for (std::size_t x = 0; x < width; ++x)
+            pixels[x] = pixels[x] / static_cast<float>(weights);
     });
     return picture;
 }

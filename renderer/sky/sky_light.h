@@ -64,8 +64,9 @@ public:
     [[nodiscard]] Between air_before(Vec3d direction, double distance) const;
     [[nodiscard]] bool has_air_before() const { return aerial_.has_value(); }
 
-    // Centres of pixels; without the sun's disk.
-    [[nodiscard]] SkyPanorama panorama(std::size_t width, std::size_t height, ThreadPool& pool) const;
+    // Centres of pixels; without the sun's disk. Of `finer` rows a pixel each is the mean by their solid angles.
+    [[nodiscard]] SkyPanorama
+    panorama(std::size_t width, std::size_t height, ThreadPool& pool, std::size_t finer = 1) const;
 
     [[nodiscard]] const Sky& sky() const { return *sky_; }
     [[nodiscard]] bool is_beyond_air() const { return altitude_ > sky_->air().height_m; } // the eye

@@ -34,10 +34,10 @@ std::string path_of(const std::string& id)
 
 api::ProblemDetails unknown_layer(const std::string& name)
 {
-    std::string all;
-    for (const renderer::LayerEntry& entry : renderer::kLayers)
-        all += (all.empty() ? "" : ", ") + std::string(entry.name);
-    return problem(404, "not_found", "there is no layer \"" + printable(name) + "\": layers are " + all);
+    return problem(404,
+                   "not_found",
+                   "there is no layer \"" + printable(name) + "\": layers are " +
+                       names_of(renderer::kEveryLayer));
 }
 
 // queue;dur=3, render;dur=120: in milliseconds, as browsers show them.
@@ -123,7 +123,7 @@ void JobHandlers::plan(Exchange& exchange, const SubmitWords& words)
 void JobHandlers::submit(Exchange& exchange)
 {
     const Acceptance accept = read_accept(exchange.header("Accept"));
-    if (accept.only_images && !accept.best()) return reply_problem(exchange, not_acceptable());
+    if (accept.only_images && !accept.best()) return reply_problem(exchange, not_acceptable({}));
     auto read = read_submit_words(exchange, store_, blobs_, limits_);
     if (auto* refusal = std::get_if<api::ProblemDetails>(&read))
         return reply_problem(exchange, std::move(*refusal));
@@ -213,18 +213,26 @@ void JobHandlers::remove(Exchange& exchange)
 void JobHandlers::image(Exchange& exchange)
 {
     const std::string& id = exchange.path.at("id");
-    auto wanted = wanted_encoding(exchange);
+    auto wanted = wanted_encoding(exchange, {});
     if (auto* refusal = std::get_if<api::ProblemDetails>(&wanted))
         return reply_problem(exchange, std::move(*refusal));
     const auto encoding = std::get<renderer::PictureEncoding>(wanted);
     std::optional<Waiters::Place> place;
+    const bool is_there = encoding == renderer::PictureEncoding{}; // the PNG of 8 bits
+    if (wait_for_picture(exchange, id, place, !is_there)) reply_image(exchange, id, encoding);
+}
+
+bool JobHandlers::wait_for_picture(Exchange& exchange,
+                                   const std::string& id,
+                                   std::optional<Waiters::Place>& place,
+                                   bool to_encode)
+{
     std::uint64_t seconds = 0;
-    if (!enter_wait(exchange, place, seconds)) return;
+    if (!enter_wait(exchange, place, seconds)) return false;
     if (place) wait(exchange, id, seconds, {});
-    // Encoding takes its time, and this thread with it; the PNG of 8 bits is there.
-    if (!place && encoding != renderer::PictureEncoding{} && !(place = waiters_.enter()))
-        return reply_problem(exchange, too_many_waiters(limits_));
-    reply_image(exchange, id, encoding);
+    if (place || !to_encode || (place = waiters_.enter())) return true;
+    reply_problem(exchange, too_many_waiters(limits_));
+    return false;
 }
 
 void JobHandlers::reply_image(Exchange& exchange,
@@ -247,11 +255,7 @@ void JobHandlers::layer(Exchange& exchange)
         return reply_problem(exchange, std::move(*refusal));
     const auto encoding = std::get<renderer::PictureEncoding>(wanted);
     std::optional<Waiters::Place> place;
-    std::uint64_t seconds = 0;
-    if (!enter_wait(exchange, place, seconds)) return;
-    if (place) wait(exchange, id, seconds, {});
-    if (!place && !(place = waiters_.enter())) // it is encoded now
-        return reply_problem(exchange, too_many_waiters(limits_));
+    if (!wait_for_picture(exchange, id, place, true)) return;
     auto found = jobs_.layer(id, entry->layer, encoding);
     if (auto* refusal = std::get_if<api::ProblemDetails>(&found))
         return reply_problem(exchange, std::move(*refusal));

@@ -43,6 +43,12 @@ private:
     wait(Exchange& exchange, const std::string& id, std::uint64_t seconds, const std::string& known_etag);
     // The place, and how long; a place that cannot be had is answered with 429 and gives false.
     bool enter_wait(Exchange& exchange, std::optional<Waiters::Place>& place, std::uint64_t& seconds);
+    // As long as the request prefers. With a place that is held where the answer is to be encoded then: that takes its
+    // time, and this thread with it. False: answered, with 429.
+    bool wait_for_picture(Exchange& exchange,
+                          const std::string& id,
+                          std::optional<Waiters::Place>& place,
+                          bool to_encode);
     void reply_image(Exchange& exchange, const std::string& id, const renderer::PictureEncoding& encoding);
     // A picture or a layer of the job; `name`: of the file that a browser would save.
     void reply_encoded(Exchange& exchange,

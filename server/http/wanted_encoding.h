@@ -6,17 +6,16 @@
 #include "renderer/description/picture_formats.h"
 #include "server/http/exchange.h"
 
+#include <optional>
 #include <variant>
 
 namespace server {
 
-// 406: no format of pictures is taken.
-api::ProblemDetails not_acceptable();
+// Of a layer, or of the picture where none is named. 406: no format that holds it is taken.
+api::ProblemDetails not_acceptable(std::optional<renderer::Layer> layer);
 
-// Of /image: what Accept likes best, or with ?bits=16 a PNG of that depth; or why not, 406 or 422.
-std::variant<renderer::PictureEncoding, api::ProblemDetails> wanted_encoding(const Exchange& exchange);
-// Of a layer: the same, among the formats that hold it.
-std::variant<renderer::PictureEncoding, api::ProblemDetails> wanted_encoding(const Exchange& exchange,
-                                                                             renderer::Layer layer);
+// What Accept likes best among the formats that hold it, or with ?bits=16 a PNG of that depth; or why not, 406 or 422.
+std::variant<renderer::PictureEncoding, api::ProblemDetails>
+wanted_encoding(const Exchange& exchange, std::optional<renderer::Layer> layer);
 
 } // namespace server

@@ -3,20 +3,17 @@
 #include "api/words/digest.h"
 #include "renderer/description/mesh_formats.h"
 #include "server/import/import_cache.h"
-#include "server/import/mapped_bytes.h"
+#include "server/import/import_files.h"
 #include "server/import/mesh_figures.h"
 #include "server/import/run_import.h"
 #include "server/import/stored_meshes.h"
 
 #include <atomic>
-#include <cerrno>
 #include <condition_variable>
-#include <fcntl.h>
 #include <future>
 #include <mutex>
 #include <new>
 #include <set>
-#include <system_error>
 #include <utility>
 
 namespace server {
@@ -59,13 +56,6 @@ api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const Kno
     return info;
 }
 
-// Of what cannot be read: of nothing, so that a file made beside it is told from one made beside something.
-std::string digest_of_file(const std::filesystem::path& path)
-{
-    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    return digest_of(file ? map_file(file.get()).bytes : std::span<const std::byte>());
-}
-
 ImportFailure out_of_memory()
 {
     return {"import_out_of_memory",
@@ -85,7 +75,7 @@ struct ImportService::State {
           const renderer::Limits& bounds,
           const Log& log_to,
           const std::filesystem::path& kept)
-        : program(std::move(program_path)), blobs(store), limits(bounds), log(log_to),
+        : program(std::move(program_path)), blobs(store), files(store), limits(bounds), log(log_to),
           cache(bounds.mesh_cache_bytes)
     {
         if (kept.empty()) return;
@@ -139,67 +129,27 @@ struct ImportService::State {
         return decltype(answer(std::declval<KnownImport&>()))();
     }
 
-    FileDescriptor open_asset(const std::string& digest) const
-    {
-        const int fd = ::open(blobs.path(kAsset, digest).c_str(), O_RDONLY | O_CLOEXEC);
-        if (fd < 0 && errno != ENOENT)
-            throw std::system_error(errno, std::generic_category(), "open an asset");
-        return FileDescriptor(fd);
-    }
-
-    // Whether the bytes are what the digest says, without holding them; false if they are there no more.
-    bool is_sound(const FileDescriptor& file, const std::string& digest)
-    {
-        const MappedBytes mapped = map_file(file.get());
-        if (digest_of(mapped.bytes) != digest)
-            return blobs.read(kAsset, digest).has_value(); // which tells and marks the damage
-        blobs.touch(kAsset, digest);
-        return true;
-    }
-
-    // Of all the files that an import may open.
-    std::uint64_t bytes_of(const ImportRequest& request) const
-    {
-        std::set<std::string_view> digests{request.digest};
-        for (const auto& [name, digest] : request.files)
-            digests.insert(digest);
-        std::uint64_t bytes = 0;
-        for (const std::string_view digest : digests)
-            bytes += blobs.size(kAsset, digest).value_or(0);
-        return bytes;
-    }
-
-    // A file of the job by the name that the mesh uses; what was answered is part of the cache's key.
-    FileDescriptor open_companion(const ImportRequest& request, std::string_view name, NamedDigests& answers)
-    {
-        const auto file = request.files.find(std::string(name));
-        FileDescriptor fd = file == request.files.end() ? FileDescriptor() : open_asset(file->second);
-        if (fd && !is_sound(fd, file->second)) fd.reset();
-        answers[std::string(name)] = fd ? file->second : "";
-        return fd;
-    }
-
     // A damaged file is the disk's fault, but the client's to mend.
     Imported
     import(const ImportRequest& request, NamedDigests& answers, bool& repeatable, std::stop_token stop)
     try {
         repeatable = false;
-        const FileDescriptor file = open_asset(request.digest);
+        const FileDescriptor file = files.open(request.digest);
         if (!file)
             return ImportFailure{"missing_asset",
                                  request.digest + " is not uploaded: PUT /v1/assets/" + request.digest};
         // The child starts reading at once; its answer counts only if the bytes are what the digest says.
-        auto verified = std::async(std::launch::async, [&] { return is_sound(file, request.digest); });
+        auto verified = std::async(std::launch::async, [&] { return files.are_sound(file, request.digest); });
         imports_run.fetch_add(1);
-        ImportRunEnd end =
-            run_import({program,
-                        file.get(),
-                        extension_of(request.name),
-                        request.is_picture,
-                        [&](std::string_view name) { return open_companion(request, name, answers); },
-                        limits,
-                        bytes_of(request)},
-                       std::move(stop));
+        ImportRunEnd end = run_import(
+            {program,
+             file.get(),
+             extension_of(request.name),
+             request.is_picture,
+             [&](std::string_view name) { return files.open_companion(request.files, name, answers); },
+             limits,
+             files.bytes_of(request.digest, request.files)},
+            std::move(stop));
         if (!verified.get())
             return ImportFailure{"missing_asset", request.digest + " was removed while it was imported"};
         if (!end.outcome) return std::monostate();
@@ -241,6 +191,7 @@ struct ImportService::State {
 
     const std::filesystem::path program;
     BlobStore& blobs;
+    const ImportFiles files;
     const renderer::Limits limits;
     const Log log;
     const std::size_t most_children = renderer::usable_cores();

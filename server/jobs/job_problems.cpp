@@ -157,10 +157,7 @@ api::ProblemDetails format_too_small_problem(renderer::PictureFormat format)
 
 api::ProblemDetails no_such_layer_problem(const JobId& id, renderer::Layer layer, renderer::LayerSet asked)
 {
-    std::string names;
-    for (const renderer::LayerEntry& entry : renderer::kLayers)
-        if (asked.has(entry.layer)) names.append(names.empty() ? "" : ", ").append(entry.name);
-    const std::string name(entry_of(layer).name);
+    const std::string names = names_of(asked), name(entry_of(layer).name);
     return problem(404,
                    "not_found",
                    "job " + id + " was not asked for the layer " + name + " (" +

@@ -1,5 +1,5 @@
-// StoredPictures: the picture of a job that succeeded, or a layer beside it, in the encoding that is asked for: from memory, from disk,
-// or encoded now from the film that is kept; where the disk lost it, the job renders again.
+// StoredPictures: the picture of a job that succeeded, or a layer beside it, in the encoding that is asked for: from
+// memory, from disk, or encoded now from the film that is kept; where the disk lost it, the job renders again.
 //
 // A picture is found to be lost (missing, cut off, other bytes) when it is asked for. Its job then goes back
 // to the queue, and says so, rather than staying succeeded with nothing to show. What was rendered to a number

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 using namespace renderer;
 
@@ -109,6 +110,22 @@ TEST(SkyLight, PutsThePanoramasPixelsWhereTheyLook)
                                                           360 * ((static_cast<double>(x) + 0.5) / 32 - 0.5)));
             EXPECT_NEAR(picture.pixels[y * 32 + x].r / expected.r, 1, 1e-4) << x << ' ' << y;
         }
+}
+
+TEST(SkyLight, OfFinerRowsAPanoramaHasTheMeanByTheirSolidAngles)
+{
+    ThreadPool pool(2);
+    const SkyLight light(single(30), pool);
+    const SkyPanorama coarse = light.panorama(8, 4, pool, 3), fine = light.panorama(8, 12, pool);
+    for (const std::size_t y : {0u, 1u, 3u}) {
+        double mean = 0, weights = 0;
+        for (std::size_t row = 3 * y; row < 3 * y + 3; ++row) {
+            const double weight = std::sin((static_cast<double>(row) + 0.5) / 12 * std::numbers::pi);
+            mean += weight * static_cast<double>(fine.pixels[row * 8 + 5].b);
+            weights += weight;
+        }
+        EXPECT_NEAR(static_cast<double>(coarse.pixels[y * 8 + 5].b) / (mean / weights), 1, 1e-5) << y;
+    }
 }
 
 TEST(SkyLight, AirBetweenPointsIsThatOfTheirWay)
