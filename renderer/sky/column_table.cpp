@@ -1,6 +1,8 @@
 #include "renderer/sky/column_table.h"
 
 #include "renderer/sky/optical_depth.h"
+#include "renderer/sky/planet_ray.h"
+#include "renderer/sky/tent_column.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +50,10 @@ struct Stencil {
 } // namespace
 
 ColumnTable::ColumnTable(const Air& air, ThreadPool& pool)
-    : radius_(air.radius_m), height_(air.height_m), columns_(kRows * kPlaces)
+    : radius_(air.radius_m), height_(air.height_m), ozone_center_(air.ozone_center_m),
+      ozone_half_width_(air.ozone_half_width_m),
+      has_ozone_(std::any_of(air.ozone.begin(), air.ozone.end(), [](double a) { return a > 0; })),
+      columns_(kRows * kPlaces)
 {
     pool.run(kRows, [&](std::size_t row, unsigned) {
         const double share = static_cast<double>(row) / (kRows - 1), altitude = height_ * share * share;
@@ -57,7 +62,8 @@ ColumnTable::ColumnTable(const Air& air, ThreadPool& pool)
             const double x = static_cast<double>(place) / (kPlaces - 1);
             const double mu =
                 cosine_at(radius_, height_, altitude, nearest + (farthest - nearest) * x * (2 - x));
-            columns_[row * kPlaces + place] = columns_past_ground(air, altitude, mu);
+            const Columns columns = columns_past_ground(air, altitude, mu);
+            columns_[row * kPlaces + place] = {columns.rayleigh, columns.mie};
         }
     });
 }
@@ -73,13 +79,24 @@ Columns ColumnTable::at(double altitude, double mu) const
     const Stencil up(std::sqrt(std::max(0.0, altitude) / height_) * (kRows - 1), kRows);
     Columns sum;
     for (std::size_t i = 0; i < 4; ++i) {
-        const Columns* row = &columns_[(up.first + i) * kPlaces + across.first];
-        Columns along;
-        for (std::size_t j = 0; j < 4; ++j)
-            along = along + row[j] * across.weight[j];
-        sum = sum + along * up.weight[i];
+        const Entry* row = &columns_[(up.first + i) * kPlaces + across.first];
+        Entry along;
+        for (std::size_t j = 0; j < 4; ++j) {
+            along.rayleigh += row[j].rayleigh * across.weight[j];
+            along.mie += row[j].mie * across.weight[j];
+        }
+        sum.rayleigh += along.rayleigh * up.weight[i];
+        sum.mie += along.mie * up.weight[i];
     }
+    if (has_ozone_) sum.ozone = ozone_at(std::max(0.0, altitude), mu);
     return sum;
+}
+
+double ColumnTable::ozone_at(double altitude, double mu) const
+{
+    PlanetRay ray(radius_, altitude, mu);
+    if (ray.hits_ground()) ray = PlanetRay::through(radius_, altitude, 0, true);
+    return tent_column(ozone_center_, ozone_half_width_, radius_, ray, ray.start(), ray.distance_at(height_));
 }
 
 } // namespace renderer
