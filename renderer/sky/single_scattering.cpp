@@ -7,6 +7,7 @@
 #include "renderer/sky/shadow_edges.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -17,7 +18,22 @@ namespace {
 
 constexpr std::size_t kPoints = 16;
 constexpr int kMostHalvings = 12;
-constexpr double kTolerance = 1e-8;
+constexpr double kTolerance = 1e-8;      // of the whole, of the difference between a piece and its halves
+constexpr double kQuickTolerance = 1e-3; // of the whole, of what a piece is thought to be off by
+
+// Legendre polynomials of orders n - 2 and n - 1, normed so that their mean with a smooth function is its part of them.
+std::array<double, 2> highest_polynomials(std::size_t n, double z)
+{
+    double value = 1, previous = 0;
+    for (std::size_t k = 1; k < n; ++k) {
+        const double order = static_cast<double>(k);
+        const double next = ((2 * order - 1) * z * value - (order - 1) * previous) / order;
+        previous = value;
+        value = next;
+    }
+    const double most = 2 * static_cast<double>(n) - 1;
+    return {(most - 2) * previous, most * value};
+}
 
 // Where light comes in along a ray, and what of it reaches the eye.
 class InScattering {
@@ -26,18 +42,23 @@ public:
         : air_(air), ray_(ray), geometry_(geometry), rule_(points),
           phase_rayleigh_(rayleigh_phase(geometry.nu)), phase_mie_(mie_phase(air.phase, air.g, geometry.nu))
     {
+        for (const double x : rule_.x)
+            highest_.push_back(highest_polynomials(points, 2 * x - 1));
     }
 
     struct Piece {
         double begin = 0, end = 0;
         Columns to_begin; // from the eye
         Spectrum value{};
+        std::array<Spectrum, 2>
+            highest{}; // its parts that are Legendre polynomials of the highest orders seen
     };
 
     // value, by one application of the rule.
     void estimate(Piece& piece) const
     {
         piece.value.fill(0);
+        piece.highest = {};
         const double length = piece.end - piece.begin;
         for (std::size_t i = 0; i < rule_.x.size(); ++i) {
             const double u = piece.begin + length * rule_.x[i];
@@ -47,9 +68,13 @@ public:
             const Columns density = air_.density(altitude);
             const double rayleigh = weight * density.rayleigh * phase_rayleigh_;
             const double mie = weight * density.mie * phase_mie_;
-            for (std::size_t w = 0; w < air_.wavelengths; ++w)
-                piece.value[w] +=
+            for (std::size_t w = 0; w < air_.wavelengths; ++w) {
+                const double more =
                     (air_.rayleigh[w] * rayleigh + air_.mie_scattering[w] * mie) * air_.transmittance(w, way);
+                piece.value[w] += more;
+                piece.highest[0][w] += highest_[i][0] * more;
+                piece.highest[1][w] += highest_[i][1] * more;
+            }
         }
     }
 
@@ -79,6 +104,7 @@ private:
     const SkyGeometry& geometry_;
     GaussLegendre rule_;
     double phase_rayleigh_, phase_mie_;
+    std::vector<std::array<double, 2>> highest_; // at each point
 };
 
 // The places, ascending, between which everything along the ray is smooth.
@@ -136,6 +162,31 @@ Spectrum settle(const InScattering& light,
     return sum;
 }
 
+// Parts fall by about the same factor from one order to the next, and the rule is exact to twice the orders that it sees:
+// what it is off by is to the highest part as that is to the whole.
+bool is_smooth(const InScattering::Piece& piece, const Spectrum& scale, std::size_t n)
+{
+    for (std::size_t w = 0; w < n; ++w) {
+        const double part = std::abs(piece.highest[0][w]) + std::abs(piece.highest[1][w]);
+        if (part * part > kQuickTolerance * scale[w] * piece.value[w]) return false;
+    }
+    return true;
+}
+
+// Halves a piece only where its own points say that they are too few.
+Spectrum settle_quickly(const InScattering& light,
+                        const InScattering::Piece& piece,
+                        const Spectrum& scale,
+                        std::size_t n,
+                        int depth)
+{
+    if (depth == kMostHalvings || is_smooth(piece, scale, n)) return piece.value;
+    const auto [first, second] = light.halve(piece);
+    Spectrum sum = settle_quickly(light, first, scale, n, depth + 1);
+    add(sum, settle_quickly(light, second, scale, n, depth + 1), n);
+    return sum;
+}
+
 } // namespace
 
 SingleScattering single_scattering(const Air& air, const SkyGeometry& geometry, SkyPrecision precision)
@@ -163,12 +214,12 @@ single_scattering(const Air& air, const PlanetRay& ray, const SkyGeometry& geome
         }
         way = way + columns_along(air, ray, stops[i], stops[i + 1]);
     }
-    if (exact) {
-        const Spectrum scale = result.air;
-        result.air.fill(0);
-        for (const InScattering::Piece& piece : pieces)
-            add(result.air, settle(light, piece, scale, air.wavelengths, 0), air.wavelengths);
-    }
+    const Spectrum scale = result.air;
+    result.air.fill(0);
+    for (const InScattering::Piece& piece : pieces)
+        add(result.air,
+            (exact ? settle : settle_quickly)(light, piece, scale, air.wavelengths, 0),
+            air.wavelengths);
     result.hits_ground = ray.hits_ground();
     if (!result.hits_ground) return result;
     const double sun = light.sun_cosine(ray.ground());

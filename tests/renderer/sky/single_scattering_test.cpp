@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
 using namespace renderer;
 
@@ -169,6 +171,36 @@ TEST(SingleScattering, QuickIsNearExact)
         const SingleScattering quick = single_scattering(air, geometry, SkyPrecision::quick);
         for (std::size_t w = 0; w < air.wavelengths; ++w)
             EXPECT_NEAR(quick.air[w], exact.air[w], 5e-3 * exact.air[w] + 1e-9) << altitude << ' ' << i;
+    }
+}
+
+// Along the ground light comes from the first tenth of the way or from far off; through an edge of the tent, from a part.
+TEST(SingleScattering, QuickIsNearExactAlongTheGroundAndPastTheOzone)
+{
+    AtmosphereDescription thick = atmosphere_preset(AtmospherePreset::earth), low = thick, wide = thick;
+    thick.mie.scattering = {1e-3};
+    thick.mie.scale_height_m = 60;
+    low.planet.top_m = low.planet.radius_m + 100'000;
+    low.ozone = {{4e-5}, 10'000, 10'000};
+    wide.planet.radius_m = 2'575'000;
+    wide.planet.top_m = 3'200'000;
+    wide.rayleigh.scale_height_m = 40'000;
+    wide.mie = {{2e-5}, {3e-5}, 0.6, 50'000, MiePhase::cornette_shanks};
+    for (const AtmosphereDescription& d : {atmosphere_preset(AtmospherePreset::mars), thick, low, wide}) {
+        const Air air = make_air(d);
+        const double above = air.height_m + 1;
+        for (const auto& [altitude, view] :
+             {std::pair{0.0, 90.0}, {0.0, 89.99}, {1.0, 90.0}, {1000.0, 90.0}, {above, 100.1}, {above, 95.0}})
+            for (const double sun : {0.0, 60.0, 85.0, 90.0, 95.1, 100.0})
+                for (const double azimuth : {0.0, 90.0, 180.0}) {
+                    const SkyGeometry geometry = SkyGeometry::from_angles_deg(altitude, sun, view, azimuth);
+                    const SingleScattering exact = single_scattering(air, geometry, SkyPrecision::exact);
+                    const SingleScattering quick = single_scattering(air, geometry, SkyPrecision::quick);
+                    for (std::size_t w = 0; w < air.wavelengths; ++w)
+                        EXPECT_NEAR(quick.air[w], exact.air[w], 5e-3 * exact.air[w] + 1e-10)
+                            << air.radius_m << ' ' << air.mie_height_m << ' ' << altitude << ' ' << view
+                            << ' ' << sun << ' ' << azimuth;
+                }
     }
 }
 
