@@ -85,6 +85,14 @@ most_off_behind_mirrors(const SceneDescription& scene, std::span<const MeshFacts
     return most;
 }
 
+// How far the camera lies below the ground of the planet, whose curve it may be aside on; not above 0: it does not.
+double depth_below_ground(const AtmosphereDescription& a, const Vec3d& eye)
+{
+    const double h = a.altitude_m + eye.y, across2 = eye.x * eye.x + eye.z * eye.z,
+                 radius = a.planet.radius_m;
+    return -(across2 + h * (2 * radius + h)) / (radius + std::sqrt(across2 + (radius + h) * (radius + h)));
+}
+
 // Extinction per metre at the wavelength nearest to 550 nm, at most, from an altitude upwards.
 double most_extinction(const Air& air, double altitude)
 {
@@ -121,6 +129,12 @@ std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
         models.skipped.push_back({"multiple_scattering",
                                   "`scattering` asks for single: 7 % (red) to 38 % (blue) "
                                   "of a clear sky's irradiance, nearly all of twilight"});
+
+    const double below = depth_below_ground(*a, scene.camera->position);
+    if (below > 0)
+        models.used.push_back({"sky_from_the_ground",
+                               "warning: the camera lies " + number_in_words(below) +
+                                   " m below the planet's ground: it sees the sky of the ground above it"});
 
     const Depth depth = depth_of(scene, meshes);
     const Air air = make_air(*a);

@@ -205,6 +205,25 @@ TEST(Atmosphere, ThatNobodySeesThroughFarIsLeftOutBeforeThings)
     }
 }
 
+TEST(Atmosphere, SaysThatTheCameraIsBelowTheGround)
+{
+    ThreadPool pool(1);
+    const auto warnings = [&](double altitude_m, Vec3d eye) {
+        AtmosphereDescription air = atmosphere(40);
+        air.altitude_m = altitude_m;
+        TestScene test = metered(air, eye, {0, 0, -1});
+        std::string all;
+        for (const auto& model : tests::make_ready(test, pool).plan.models.used)
+            if (model.name == "sky_from_the_ground") all += model.why;
+        return all;
+    };
+    EXPECT_NE(warnings(0, {0, -5, 0}).find(" 5 m below"), std::string::npos) << warnings(0, {0, -5, 0});
+    EXPECT_NE(warnings(10, {0, -10.5, 0}), "");
+    EXPECT_EQ(warnings(0, {0, 0, 0}), "");
+    EXPECT_EQ(warnings(10, {0, -5, 0}), "");
+    EXPECT_EQ(warnings(0, {50'000, -190, 0}), ""); // where the ground has fallen by 197 m
+}
+
 TEST(Atmosphere, OfTheNightIsFinite)
 {
     for (const double elevation : {-6.0, -18.0, -90.0}) {
