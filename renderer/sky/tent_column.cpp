@@ -2,6 +2,8 @@
 
 #include "renderer/math/transcendental.h"
 
+#include <algorithm>
+
 namespace renderer {
 
 namespace {
@@ -45,6 +47,7 @@ double tent_column(double center_m,
     const auto side = [&](double low, double high) {
         return one_side(center_m, half_width_m, planet_radius, ray, low, high);
     };
+    if (!(end > begin)) return 0; // by rounding, close below the top
     if (begin >= 0) return side(begin, end);
     if (end <= 0) return side(-end, -begin);
     return side(0, -begin) + side(0, end);

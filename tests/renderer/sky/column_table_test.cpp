@@ -85,4 +85,9 @@ TEST(ColumnTable, EndsWithTheAir)
     EXPECT_EQ(table.at(60'000, 0.5).rayleigh, 0);
     EXPECT_NEAR(table.at(0, 1).ozone, 15'000, 1e-6);
     EXPECT_TRUE(std::isfinite(table.at(0, -1).rayleigh)); // cut to the horizon
+    for (const double mu : {1.0, 0.3, 0.0, -0.05}) {
+        const Columns last = table.at(std::nextafter(air.height_m, 0), mu),
+                      exact = columns_to_top(air, air.height_m, mu).columns;
+        EXPECT_NEAR(last.ozone, exact.ozone, 1) << mu;
+    }
 }
