@@ -22,6 +22,8 @@
 
 namespace renderer {
 
+inline constexpr float kGreatestMeshIor = 10;
+
 // A material that the file itself carries (MTL, glTF), as far as it is modelled.
 struct MeshMaterial {
     std::string name;
@@ -37,8 +39,11 @@ struct MeshMaterial {
 
     // glTF's model: `diffuse` is the base colour, and these count instead of specular and shininess.
     bool is_physical = false;
-    float metallic = 0, roughness = 1, transmission = 0;
-    float ior = 1.5f;
+    float metallic = 0, roughness = 1;
+    float ior = 1.5f; // 1 to kGreatestMeshIor
+    // A closed body of glass, of that index; beside roughness and normal map nothing else counts.
+    bool is_glass = false;
+    Rgb absorption{}; // of light within it, 1/m
     float opacity = 1;
     float cutoff = 0; // where alpha is below it there is nothing; 0: alpha makes no holes
     Rgb emission{};   // radiance of the whole surface, W/(m^2 sr)

@@ -1,5 +1,6 @@
 #include "renderer/geometry/validate_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -133,7 +134,9 @@ Found check_materials_and_parts(const Mesh& mesh)
                                   m.shininess,
                                   m.metallic,
                                   m.roughness,
-                                  m.transmission,
+                                  m.absorption.r,
+                                  m.absorption.g,
+                                  m.absorption.b,
                                   m.ior,
                                   m.opacity,
                                   m.cutoff,
@@ -144,6 +147,15 @@ Found check_materials_and_parts(const Mesh& mesh)
                 return Fault{"",
                              "non_finite",
                              "material " + text(i) + " (\"" + m.name + "\") has a value that is not finite"};
+        if (std::min({m.absorption.r, m.absorption.g, m.absorption.b}) < 0)
+            return Fault{"",
+                         "out_of_range",
+                         "material " + text(i) + " (\"" + m.name + "\") absorbs less than nothing"};
+        if (m.ior < 1 || m.ior > kGreatestMeshIor)
+            return Fault{"",
+                         "out_of_range",
+                         "material " + text(i) + " (\"" + m.name +
+                             "\") has an index of refraction below 1 or above 10"};
     }
     if (Found f = check_pictures(mesh)) return f;
     for (const MeshPart& part : mesh.parts)

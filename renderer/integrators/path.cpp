@@ -144,7 +144,7 @@ private:
     {
         turn.glass = *turn.surface.bsdf;
         const Media::Boundary boundary =
-            turn.path->media.boundary(hit.instance, turn.glass.medium, turn.surface.is_outside);
+            turn.path->media.boundary(scene_.body_at(hit), turn.glass.medium, turn.surface.is_outside);
         turn.glass.eta = boundary.eta;
         turn.surface.bsdf = &turn.glass;
         turn.passes = !boundary.is_real;
@@ -183,7 +183,7 @@ private:
     bool pass(Turn& turn)
     {
         Path& path = *turn.path;
-        path.media.cross(turn.hit->instance, turn.glass.medium, turn.surface.is_outside);
+        path.media.cross(scene_.body_at(*turn.hit), turn.glass.medium, turn.surface.is_outside);
         path.ray = Ray{offset_origin(turn.surface.point, path.ray.direction), path.ray.direction};
         return true;
     }
@@ -208,7 +208,8 @@ private:
         if ((dot(turn.surface.geometric, to_float(way)) > 0) == drawn.is_transmission) return false;
         path.weight = path.weight * drawn.weight;
         if (!survives(path)) return false;
-        if (drawn.is_transmission) path.media.cross(turn.hit->instance, bsdf.medium, turn.surface.is_outside);
+        if (drawn.is_transmission)
+            path.media.cross(scene_.body_at(*turn.hit), bsdf.medium, turn.surface.is_outside);
         path.pdf = drawn.is_delta ? 0 : static_cast<double>(drawn.pdf);
         path.from = turn.surface.point.position;
         path.is_indirect = path.is_indirect || !drawn.is_delta;

@@ -110,11 +110,11 @@ private:
             Bsdf& bsdf = glass_[i] = *surface.bsdf;
             surface.bsdf = &bsdf;
             const Media::Boundary boundary =
-                branch.media.boundary(hit.instance, bsdf.medium, surface.is_outside);
+                branch.media.boundary(scene_.body_at(hit), bsdf.medium, surface.is_outside);
             bsdf.eta = boundary.eta;
             if (!boundary.is_real) {
                 Branch through = branch;
-                through.media.cross(hit.instance, bsdf.medium, surface.is_outside);
+                through.media.cross(scene_.body_at(hit), bsdf.medium, surface.is_outside);
                 through.ray = Ray{offset_origin(surface.point, branch.ray.direction), branch.ray.direction};
                 waiting_.push_back(through);
                 return false;
@@ -137,7 +137,7 @@ private:
         branch.weight = from.weight * lobe.weight;
         const float carried = strongest(branch.weight);
         if (carried == 0) return;
-        if (lobe.is_transmission) branch.media.cross(hit.instance, bsdf.medium, surface.is_outside);
+        if (lobe.is_transmission) branch.media.cross(scene_.body_at(hit), bsdf.medium, surface.is_outside);
         if (from.depth >= max_depth_ || carried < kLeastWeight) {
             // Within glass of index n radiance is n^2 times what it came from.
             const double n =

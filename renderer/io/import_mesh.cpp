@@ -2,6 +2,7 @@
 
 #include "renderer/description/mesh_formats.h"
 #include "renderer/geometry/validate_mesh.h"
+#include "renderer/io/closed_glass.h"
 #include "renderer/io/read_3ds.h"
 #include "renderer/io/read_collada.h"
 #include "renderer/io/read_fbx.h"
@@ -141,6 +142,7 @@ ImportResult import_mesh(std::string_view name,
                            "the file was read as " + imported->format + " and has no triangles"};
     if (auto fault = validate_mesh(imported->mesh))
         return ImportFault{std::move(fault->code), std::move(fault->detail)};
+    keep_closed_glass(imported->mesh, imported->notes);
     imported->opened_files = files.opened();
     return result;
 }

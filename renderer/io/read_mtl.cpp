@@ -145,6 +145,8 @@ private:
     bool statement(std::string_view word, std::string_view rest);
     bool property(std::string_view word, std::string_view rest);
     void map(std::string_view word, std::string_view rest);
+    bool take_glass(std::string_view line);
+    bool take_ior(std::string_view line);
     void end_material();
     void note(const std::string& what)
     {
@@ -177,9 +179,27 @@ bool MtlReader::property(std::string_view word, std::string_view rest)
     if (word == "Ke") return take_emission(rest, m.emission);
     if (word == "d") return take_dissolve(rest, m.is_transparent);
     if (word == "Tr") return take_above(rest, 0, m.is_transparent);
+    if (word == "illum") return take_glass(rest);
+    if (word == "Ni") return take_ior(rest);
     if (word == "Pm") return take_above(rest, 0, m.is_metal);
     if (word == "Pr") return take_below(rest, 1, m.has_roughness);
     if (is_map(word)) map(word, rest);
+    return true;
+}
+
+// Models 4, 6 and 7 are glass that rays are traced through. 9 is what exporters write of whatever is thin.
+bool MtlReader::take_glass(std::string_view line)
+{
+    const auto model = take_number(line);
+    if (model) material_->is_glass = *model == 4 || *model == 6 || *model == 7;
+    return model.has_value();
+}
+
+bool MtlReader::take_ior(std::string_view line)
+{
+    const auto ior = take_number(line);
+    if (!ior || *ior < 1) return false;
+    material_->ior = std::min(*ior, kGreatestMeshIor);
     return true;
 }
 
@@ -213,6 +233,7 @@ void MtlReader::end_material()
     constexpr std::size_t kMostNames = 4;
     if (!material_) return;
     if (has_bumps_) ++bumpy_;
+    if (material_->is_glass) material_->is_transparent = false; // it is modelled
     // What a picture would light up in places must not shine all over.
     if (material_->emits) material_->emission = {};
     if (has_color_) return;

@@ -1,6 +1,7 @@
 #include "renderer/io/scene_material.h"
 
 #include "renderer/io/text.h"
+#include "renderer/math/transcendental.h"
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
@@ -45,6 +46,25 @@ void take_emission(const aiMaterial& from, MeshMaterial& to)
         to.emits = !is_black(emission);
     else
         to.emission = emission;
+}
+
+// A body that KHR_materials_volume fills; without a thickness light passes a thin sheet, which is not modelled.
+void take_glass(const aiMaterial& from, MeshMaterial& to)
+{
+    to.is_glass = factor_of(from, 0, AI_MATKEY_TRANSMISSION_FACTOR) > 0.5f &&
+                  factor_of(from, 0, AI_MATKEY_VOLUME_THICKNESS_FACTOR) > 0 && to.metallic < 0.5f;
+    if (!to.is_glass) return;
+    to.is_transparent = false;
+    to.ior = std::clamp(factor_of(from, 1.5f, AI_MATKEY_REFRACTI), 1.0f, kGreatestMeshIor);
+    const float distance = factor_of(from, 0, AI_MATKEY_VOLUME_ATTENUATION_DISTANCE);
+    aiColor3D left;
+    if (!(distance > 0) || from.Get(AI_MATKEY_VOLUME_ATTENUATION_COLOR, left) != AI_SUCCESS) return;
+    // After the distance the colour is left of white.
+    const auto absorption = [distance](float share) {
+        const double s = std::clamp(static_cast<double>(share), 1e-6, 1.0);
+        return static_cast<float>(std::clamp(-log(s) / static_cast<double>(distance), 0.0, 1e6));
+    };
+    to.absorption = {absorption(left.r), absorption(left.g), absorption(left.b)};
 }
 
 // What is not modelled, to be told.
@@ -165,6 +185,7 @@ void read_scene_material(
         to.metallic = std::clamp(factor_of(from, 1, AI_MATKEY_METALLIC_FACTOR), 0.0f, 1.0f);
         to.roughness = std::clamp(factor_of(from, 1, AI_MATKEY_ROUGHNESS_FACTOR), 0.0f, 1.0f);
         to.opacity = std::clamp(color.a, 0.0f, 1.0f);
+        take_glass(from, to);
     }
     take_alpha(from, images, to);
     name_textures(from, to);

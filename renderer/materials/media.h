@@ -9,35 +9,54 @@
 
 #include "renderer/materials/bsdf.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 namespace renderer {
 
+// Parts of one object that have materials of their own are bodies apart.
+struct BodyId {
+    std::uint32_t instance = 0xffffffff, material = 0xffffffff;
+    friend constexpr bool operator==(BodyId, BodyId) = default;
+};
+
 class Media {
 public:
     static constexpr std::size_t kMost = 8;
+
+    Media() = default;
+    // Most paths are inside of nothing.
+    Media(const Media& other) : count_(other.count_)
+    {
+        std::copy_n(other.bodies_.begin(), count_, bodies_.begin());
+    }
+    Media& operator=(const Media& other)
+    {
+        count_ = other.count_;
+        std::copy_n(other.bodies_.begin(), count_, bodies_.begin());
+        return *this;
+    }
 
     struct Boundary {
         bool is_real = true; // else light passes unbent
         float eta = 1;       // index behind it over index on the viewer's side
     };
-    // A boundary of body `instance` met from outside or inside: nothing changes yet.
-    Boundary boundary(std::uint32_t instance, const GlassMedium& medium, bool from_outside) const;
+    // A boundary of a body met from outside or inside: nothing changes yet.
+    Boundary boundary(BodyId body, const GlassMedium& medium, bool from_outside) const;
     // Light has passed it.
-    void cross(std::uint32_t instance, const GlassMedium& medium, bool from_outside);
+    void cross(BodyId body, const GlassMedium& medium, bool from_outside);
 
     // What fills the place where the path is; nothing: vacuum.
-    const GlassMedium* here() const { return top(kNobody); }
+    const GlassMedium* here() const { return top(BodyId{}); }
 
 private:
-    static constexpr std::uint32_t kNobody = 0xffffffff;
     struct Body {
-        std::uint32_t instance = kNobody;
+        BodyId id{};
         GlassMedium medium{};
     };
-    const GlassMedium* top(std::uint32_t but) const; // but for one body
+    const GlassMedium* top(BodyId but) const; // but for one body
 
     std::array<Body, kMost> bodies_{}; // in the order they were entered
     std::size_t count_ = 0;

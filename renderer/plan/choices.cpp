@@ -71,6 +71,9 @@ void count_object(Census& c,
         c.metal += facts->metal_materials;
         c.rough += facts->rough_materials;
     }
+    if (facts->glass_materials > facts->rough_glass_materials) ++c.materials.glass;
+    if (facts->rough_glass_materials > 0) ++c.materials.rough_glass;
+    if (facts->is_all_glass) return;
     ++(facts->physical_materials > 0 ? c.materials.cook_torrance
        : facts->has_specular         ? c.materials.phong_normalized
                                      : c.materials.diffuse);
@@ -271,7 +274,8 @@ private:
                     " of meshes would shine as a picture says: only whole surfaces of one colour do");
         skip_if(c_.transparent,
                 "transparency",
-                of(c_.transparent, "material") + " of meshes would let light through: all are opaque");
+                of(c_.transparent, "material") +
+                    " of meshes would let light through: only closed bodies of glass do");
         skip_if(c_.metal,
                 "metal",
                 of(c_.metal, "material") + " of meshes would reflect as metal: their colours are diffuse");

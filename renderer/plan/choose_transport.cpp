@@ -59,10 +59,15 @@ private:
         const auto* const mesh = std::get_if<MeshShape>(&object.shape);
         if (mesh != nullptr) ++kinds_.not_convex;
         if (!object.material) {
-            ++kinds_.physical; // the default, or a mesh's own
-            if (mesh == nullptr) return;
-            if (meshes_[mesh->mesh].physical_materials != 0) ++kinds_.sharp;
-            kinds_.emitters += meshes_[mesh->mesh].shining_triangles;
+            if (mesh == nullptr) {
+                ++kinds_.physical; // the default
+                return;
+            }
+            const MeshFacts& own = meshes_[mesh->mesh];
+            if (!own.is_all_glass || own.rough_glass_materials != 0) ++kinds_.physical;
+            if (own.glass_materials != 0) ++kinds_.glass;
+            if (own.physical_materials + own.glass_materials != 0) ++kinds_.sharp;
+            kinds_.emitters += own.shining_triangles;
             return;
         }
         const Material& material = scene_.materials[*object.material].material;

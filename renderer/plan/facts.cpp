@@ -23,6 +23,11 @@ std::vector<bool> used_materials(const Mesh& mesh)
     return used;
 }
 
+bool is_rough(const MeshMaterial& material)
+{
+    return material.is_physical && (static_cast<double>(material.roughness) >= kSmoothBelow || material.physical_map);
+}
+
 std::uint64_t shining_triangles(const Mesh& mesh)
 {
     const auto shines = [&](std::size_t material) {
@@ -53,6 +58,7 @@ MeshFacts facts_of(const Mesh& mesh)
         facts.has_specular = facts.has_specular || (!is_black(material.specular) && material.shininess > 0);
     }
     const std::vector<bool> used = used_materials(mesh);
+    std::uint32_t opaque = 0;
     for (std::size_t i = 0; i < used.size(); ++i) {
         if (!used[i]) continue;
         const MeshMaterial& material = mesh.materials[i];
@@ -60,11 +66,14 @@ MeshFacts facts_of(const Mesh& mesh)
         facts.transparent_materials += material.is_transparent;
         facts.metal_materials += material.is_metal && !material.is_physical;
         facts.rough_materials += material.has_roughness && !material.is_physical;
-        facts.physical_materials += material.is_physical;
+        facts.physical_materials += material.is_physical && !material.is_glass;
+        ++(material.is_glass ? facts.glass_materials : opaque);
+        facts.rough_glass_materials += material.is_glass && is_rough(material);
         facts.shining_materials += !is_black(material.emission);
         facts.cutouts += material.cutoff > 0;
         facts.normal_mapped += material.normal_map.has_value();
     }
+    facts.is_all_glass = facts.glass_materials > 0 && opaque == 0;
     facts.shining_triangles = shining_triangles(mesh);
     facts.has_uvs = !mesh.uvs.empty();
     facts.images = static_cast<std::uint32_t>(mesh.images.size());

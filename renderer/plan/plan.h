@@ -47,7 +47,9 @@ struct MeshFacts {
     std::uint32_t normal_mapped = 0; // materials with normal maps
     // Materials that some triangle has, by what of theirs is not modelled.
     std::uint32_t emissive_materials = 0, transparent_materials = 0, metal_materials = 0, rough_materials = 0;
-    std::uint32_t physical_materials = 0;   // glTF's, shaded as Cook-Torrance
+    std::uint32_t physical_materials = 0;                         // glTF's, shaded as Cook-Torrance
+    std::uint32_t glass_materials = 0, rough_glass_materials = 0; // closed bodies of glass; of these, rough
+    bool is_all_glass = false;
     std::uint32_t shining_materials = 0;    // of the mesh's own that some triangle has
     std::uint64_t shining_triangles = 0;    // that have one of those
     std::map<std::string, PartFacts> parts; // by name; of several of one name, the first

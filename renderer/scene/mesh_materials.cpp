@@ -25,8 +25,21 @@ Material physical(const MeshMaterial& m)
     return out;
 }
 
+Material glass(const MeshMaterial& m)
+{
+    GlassMaterial out;
+    out.ior = static_cast<double>(m.ior);
+    out.absorption = {m.absorption};
+    if (!m.is_physical) return out; // smooth
+    std::optional<TextureUse> map = m.physical_map;
+    if (map) map->channel = 1;
+    out.roughness = {static_cast<double>(m.roughness), map};
+    return out;
+}
+
 Material plain(const MeshMaterial& m)
 {
+    if (m.is_glass) return glass(m);
     if (m.is_physical) return physical(m);
     if (is_black(m.specular) || !(m.shininess > 0)) {
         DiffuseMaterial diffuse;

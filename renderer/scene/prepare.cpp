@@ -189,7 +189,7 @@ private:
                                 bsdf.two_sided);
         }
         for (std::uint32_t i = run.first_triangle; i < run.first_triangle + run.triangle_count; ++i) {
-            const Bsdf& bsdf = bsdfs[look.first_bsdf + look.materials_of->triangle_materials[i]];
+            const Bsdf& bsdf = bsdfs[look.bsdf_of(i)];
             if (!is_black(bsdf.emission))
                 add_emitters(lights, instance, number, i, 1, bsdf.emission, bsdf.two_sided);
         }

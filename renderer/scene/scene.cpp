@@ -30,9 +30,7 @@ Vec3d Scene::shading_normal(const SceneHit& hit, const Mesh& mesh) const
 
 std::uint32_t Scene::material_at(const SceneHit& hit) const
 {
-    const Parts::Look& look = parts_.looks[hit.instance];
-    if (look.materials_of == nullptr || look.materials_of->triangle_materials.empty()) return look.first_bsdf;
-    return look.first_bsdf + look.materials_of->triangle_materials[hit.primitive];
+    return parts_.looks[hit.instance].bsdf_of(hit.primitive);
 }
 
 Surface Scene::surface_at(const SceneHit& hit, Vec3d toward_viewer, BsdfRoom* room, double width) const

@@ -65,6 +65,12 @@ public:
             std::uint32_t first_bsdf = 0;       // with a material for each of the mesh's: the first of them
             const Mesh* materials_of = nullptr; // the mesh whose triangles choose their bsdf; or none
             const Mesh* normals_of = nullptr;   // the mesh whose normals are interpolated; or none: flat
+
+            std::uint32_t bsdf_of(std::uint32_t primitive) const
+            {
+                const bool by_triangle = materials_of != nullptr && !materials_of->triangle_materials.empty();
+                return first_bsdf + (by_triangle ? materials_of->triangle_materials[primitive] : 0u);
+            }
         };
         std::vector<Look> looks;
         Media media_at_camera;    // that its eye is inside of
@@ -120,6 +126,9 @@ public:
     // in metres; 0 where that is not known.
     Surface
     surface_at(const SceneHit& hit, Vec3d toward_viewer, BsdfRoom* room = nullptr, double width = 0) const;
+
+    // Whose boundary that is, if it is of glass.
+    BodyId body_at(const SceneHit& hit) const { return {hit.instance, material_at(hit)}; }
 
 private:
     std::uint32_t material_at(const SceneHit& hit) const;

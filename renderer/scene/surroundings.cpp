@@ -82,21 +82,23 @@ Media media_around(Vec3d point,
     if (std::none_of(bsdfs.begin(), bsdfs.end(), transmits)) return media;
     constexpr int kMostSurfaces = 4096; // glass that was not closed might never end
     constexpr Vec3d kAnyWay{0.5376, 0.7312, 0.4201};
-    std::vector<std::pair<std::uint32_t, const GlassMedium*>> left;
-    std::map<std::uint32_t, int> entered;
+    std::vector<std::pair<BodyId, const GlassMedium*>> left;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> entered; // by instance and material
     Ray ray{point, kAnyWay};
     for (int i = 0; i < kMostSurfaces; ++i) {
         const std::optional<SceneHit> hit = tree.closest_hit(ray);
         if (!hit) break;
         ray.origin = offset_origin(hit->point, kAnyWay);
-        const Bsdf& bsdf = bsdfs[looks[hit->instance].first_bsdf]; // of a mesh's own materials the first
+        const BodyId body{hit->instance, looks[hit->instance].bsdf_of(hit->primitive)};
+        const Bsdf& bsdf = bsdfs[body.material];
         if (!transmits(bsdf)) continue;
+        int& times = entered[{body.instance, body.material}];
         if (dot(hit->point.normal, kAnyWay) < 0)
-            ++entered[hit->instance];
-        else if (entered[hit->instance] > 0)
-            --entered[hit->instance];
+            ++times;
+        else if (times > 0)
+            --times;
         else
-            left.emplace_back(hit->instance, &bsdf.medium);
+            left.emplace_back(body, &bsdf.medium);
     }
     for (auto body = left.rbegin(); body != left.rend(); ++body)
         media.cross(body->first, *body->second, true);

@@ -53,10 +53,11 @@ public:
         add(m.shininess);
         add(m.textures);
         for (const bool is :
-             {m.emits, m.is_transparent, m.is_metal, m.has_roughness, m.is_physical, m.two_sided})
+             {m.emits, m.is_transparent, m.is_metal, m.has_roughness, m.is_physical, m.is_glass, m.two_sided})
             add(static_cast<std::uint8_t>(is));
-        for (const float value : {m.metallic, m.roughness, m.transmission, m.ior, m.opacity, m.cutoff})
+        for (const float value : {m.metallic, m.roughness, m.ior, m.opacity, m.cutoff})
             add(value);
+        add(m.absorption);
         add(m.emission);
         for (const auto* const map :
              {&m.color_map, &m.specular_map, &m.alpha_map, &m.physical_map, &m.emission_map, &m.normal_map})
@@ -138,11 +139,11 @@ public:
     {
         return take(m.name) && take(m.diffuse) && take(m.specular) && take(m.shininess) && take(m.textures) &&
                take_flag(m.emits) && take_flag(m.is_transparent) && take_flag(m.is_metal) &&
-               take_flag(m.has_roughness) && take_flag(m.is_physical) && take_flag(m.two_sided) &&
-               take(m.metallic) && take(m.roughness) && take(m.transmission) && take(m.ior) &&
-               take(m.opacity) && take(m.cutoff) && take(m.emission) && take_map(m.color_map) &&
-               take_map(m.specular_map) && take_map(m.alpha_map) && take_map(m.physical_map) &&
-               take_map(m.emission_map) && take_map(m.normal_map);
+               take_flag(m.has_roughness) && take_flag(m.is_physical) && take_flag(m.is_glass) &&
+               take_flag(m.two_sided) && take(m.metallic) && take(m.roughness) && take(m.ior) &&
+               take(m.opacity) && take(m.cutoff) && take(m.absorption) && take(m.emission) &&
+               take_map(m.color_map) && take_map(m.specular_map) && take_map(m.alpha_map) &&
+               take_map(m.physical_map) && take_map(m.emission_map) && take_map(m.normal_map);
     }
     bool take_map(std::optional<renderer::TextureUse>& map)
     {

@@ -52,6 +52,13 @@ TEST(ValidateMesh, RefusesNumbersThatAreNotFiniteAndNamesTheVertex)
     }
 }
 
+TEST(ValidateMesh, RefusesGlassThatCannotBe)
+{
+    expect_fault([](Mesh& m) { m.materials[1].ior = 0; }, "out_of_range", "index of refraction");
+    expect_fault([](Mesh& m) { m.materials[0].ior = 11; }, "out_of_range", "material 0");
+    expect_fault([](Mesh& m) { m.materials[1].absorption.g = -1; }, "out_of_range", "absorbs less");
+}
+
 TEST(ValidateMesh, RefusesIndicesOutOfRangeAndNamesTheTriangle)
 {
     expect_fault([](Mesh& m) { m.triangles[5][2] = 24; }, "index_out_of_range", "triangle 5 names vertex 24");

@@ -126,6 +126,8 @@ TEST(Path, ScalesWithTheBrightnessOfItsLights)
     EXPECT_GT(one, 0);
     for (const int power : {-99, 99})
         EXPECT_EQ(room(std::ldexp(1.0f, power)), std::ldexp(one, power)) << power;
+    for (const float scale : {1e-30f, 1e30f})
+        EXPECT_NEAR(room(scale) / scale, one, 1e-5f * one) << scale;
 }
 
 TEST(Path, OfUniformSkyGivesPiTimesItsRadianceAsIrradiance)

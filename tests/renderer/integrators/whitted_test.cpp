@@ -178,6 +178,80 @@ TEST(GlassBody, OfHigherPriorityFillsThePlaceWhereBodiesOverlap)
     }
 }
 
+// A smaller ball of water within a ball of glass.
+struct Balls {
+    Mesh glass = tests::faceted_sphere(24, 12), water = tests::faceted_sphere(24, 12);
+
+    Balls()
+    {
+        for (Vec3f& position : water.positions)
+            position = position * 0.5f;
+        for (Mesh* mesh : {&glass, &water}) {
+            mesh->materials.resize(1);
+            mesh->materials[0].is_glass = true;
+        }
+        water.materials[0].ior = 1.33f;
+        water.materials[0].absorption = {0.5f, 0, 0};
+    }
+
+    Mesh both_in_one() const
+    {
+        Mesh mesh = glass;
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (std::size_t i = 0; i < water.positions.size(); ++i) {
+            mesh.positions.push_back(water.positions[i]);
+            mesh.normals.push_back(water.normals[i]);
+        }
+        mesh.triangle_materials.assign(mesh.triangles.size(), 0);
+        for (const Triangle& t : water.triangles) {
+            mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+            mesh.triangle_materials.push_back(1);
+        }
+        mesh.materials.push_back(water.materials[0]);
+        return mesh;
+    }
+};
+
+TEST(GlassBody, OfAMeshsOwnMaterialIsAsOneThatTheSceneNames)
+{
+    const Balls balls;
+    for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
+        TestScene named = ball_before_the_sky(glass(1.5), transport), own = named;
+        for (TestScene* test : {&named, &own}) {
+            test->description.environment = ColorEnvironment{{1, 0.5, 0.25}};
+            test->description.transport.max_depth = 8;
+            test->description.objects[0].shape = MeshShape{};
+            test->meshes = {balls.glass};
+        }
+        own.description.objects[0].material.reset();
+        EXPECT_EQ(tests::digest(render_description(own).film), tests::digest(render_description(named).film));
+    }
+}
+
+TEST(GlassBody, WithinAnotherOfTheSameMeshIsABodyOfItsOwn)
+{
+    const Balls balls;
+    for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
+        TestScene apart = ball_before_the_sky(glass(1.5), transport);
+        apart.description.environment = ColorEnvironment{{1, 0.5, 0.25}};
+        apart.description.transport.max_depth = 8;
+        apart.description.objects[0].shape = MeshShape{};
+        apart.description.objects[0].material.reset();
+        TestScene one = apart;
+        apart.meshes = {balls.glass, balls.water};
+        apart.description.objects.push_back(apart.description.objects[0]);
+        apart.description.objects[1].shape = MeshShape{1};
+        one.meshes = {balls.both_in_one()};
+        const RenderResult a = render_description(apart), b = render_description(one);
+        EXPECT_EQ(tests::digest(a.film), tests::digest(b.film));
+        EXPECT_LT(tests::mean_of(a.film.mean()).r, 0.9f) << "the water absorbs";
+        // And the eye is known to be in both.
+        for (TestScene* test : {&apart, &one})
+            test->description.camera->position = {0.01, 0.02, 0.03};
+        EXPECT_EQ(tests::digest(render_description(apart).film), tests::digest(render_description(one).film));
+    }
+}
+
 TEST(GlassBody, AroundTheEyeIsKnown)
 {
     // Inside a ball of glass the sky is seen through its wall: nothing is lost but by its own reflection, which sees

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace {
@@ -149,6 +150,20 @@ TEST(ReadGltf, TakesTheEmissionOfItsMaterials)
     EXPECT_EQ(emission(R"("name":"b","emissiveFactor":[1,0.5,0.25])"), (renderer::Rgb{1, 0.5f, 0.25f}));
 }
 
+// `buffer`: of a length that 4 divides.
+std::string glb(std::string json, const std::string& buffer)
+{
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t number) {
+        std::string bytes;
+        for (unsigned shift = 0; shift < 32; shift += 8)
+            bytes += static_cast<char>(number >> shift & 0xff);
+        return bytes;
+    };
+    return "glTF" + word(2) + word(12 + 8 + json.size() + 8 + buffer.size()) + word(json.size()) + "JSON" +
+           json + word(buffer.size()) + std::string("BIN\0", 4) + buffer;
+}
+
 // Two triangles; the second material of the file is used first, and one that nobody uses stands before both.
 std::string two_lamps(const std::string& buffer)
 {
@@ -192,18 +207,81 @@ TEST(ReadGltf, MultipliesEmissionByTheStrengthOfItsOwnMaterial)
     std::string corners(36, '\0');
     for (const std::size_t at : {12u, 28u})
         corners.replace(at, 4, std::string("\0\0\x80\x3f", 4));
-    std::string json = two_lamps("");
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    const auto word = [](std::size_t number) {
-        std::string bytes;
-        for (unsigned shift = 0; shift < 32; shift += 8)
-            bytes += static_cast<char>(number >> shift & 0xff);
-        return bytes;
-    };
-    EXPECT_EQ(emissions_of("t.glb",
-                           "glTF" + word(2) + word(12 + 8 + json.size() + 8 + 36) + word(json.size()) +
-                               "JSON" + json + word(36) + std::string("BIN\0", 4) + corners),
-              want);
+    EXPECT_EQ(emissions_of("t.glb", glb(two_lamps(""), corners)), want);
+}
+
+// A tetrahedron of one material.
+std::string tetrahedron_glb(const std::string& material)
+{
+    const std::string json =
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],
+        "materials":[{"name":"m",)" +
+        material + R"(}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+                     {"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"}],
+        "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+        "buffers":[{"byteLength":60}],
+        "extensionsUsed":["KHR_materials_transmission","KHR_materials_volume","KHR_materials_ior"]})";
+    std::string bytes(48, '\0');
+    for (const std::size_t at : {12u, 28u, 44u})
+        bytes.replace(at, 4, std::string("\0\0\x80\x3f", 4));
+    for (const char corner : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3})
+        bytes += corner;
+    return glb(json, bytes);
+}
+
+renderer::MeshMaterial glass_of(const std::string& factors, const std::string& extensions)
+{
+    const auto result = import_text(
+        "t.glb",
+        tetrahedron_glb("\"pbrMetallicRoughness\":{" + factors + "},\"extensions\":{" + extensions + "}"));
+    EXPECT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
+    return std::get<ImportedMesh>(result).mesh.materials.at(0);
+}
+
+TEST(ReadGltf, TakesTransmittingBodiesThatHaveAVolumeAsGlass)
+{
+    const std::string factors = R"("metallicFactor":0,"roughnessFactor":0.25)",
+                      transmission = R"("KHR_materials_transmission":{"transmissionFactor":1})";
+    const renderer::MeshMaterial glass = glass_of(
+        factors,
+        transmission +
+            R"(,"KHR_materials_ior":{"ior":1.33},"KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":2,)"
+            R"("attenuationColor":[1,0.5,0.25]})");
+    EXPECT_TRUE(glass.is_glass);
+    EXPECT_FALSE(glass.is_transparent);
+    EXPECT_FLOAT_EQ(glass.ior, 1.33f);
+    EXPECT_FLOAT_EQ(glass.roughness, 0.25f);
+    EXPECT_EQ(glass.absorption.r, 0);
+    EXPECT_NEAR(glass.absorption.g, std::log(2.0) / 2, 1e-6);
+    EXPECT_NEAR(glass.absorption.b, std::log(4.0) / 2, 1e-6);
+
+    const std::string volume = R"(,"KHR_materials_volume":{"thicknessFactor":0.1})";
+    const renderer::MeshMaterial plain = glass_of(factors, transmission + volume);
+    EXPECT_TRUE(plain.is_glass);
+    EXPECT_FLOAT_EQ(plain.ior, 1.5f);
+    EXPECT_EQ(plain.absorption, renderer::Rgb{});
+    for (const renderer::MeshMaterial& opaque :
+         {glass_of(factors, transmission),
+          glass_of(R"("metallicFactor":1)", transmission + volume),
+          glass_of(factors, R"("KHR_materials_transmission":{"transmissionFactor":0.25})" + volume)}) {
+        EXPECT_FALSE(opaque.is_glass);
+        EXPECT_TRUE(opaque.is_transparent) << "which is told";
+    }
+    EXPECT_FALSE(glass_of(factors, R"("KHR_materials_ior":{"ior":1.2})").is_glass);
+
+    std::string sheet =
+        triangle_gltf("",
+                      R"(,"material":0)",
+                      R"(,"extensionsUsed":["KHR_materials_transmission","KHR_materials_volume"],)"
+                      R"("materials":[{"name":"pane","extensions":{)" +
+                          transmission + volume + "}," + R"("pbrMetallicRoughness":{)" + factors + "}}]");
+    const auto result = import_text("t.gltf", sheet);
+    ASSERT_TRUE(std::holds_alternative<ImportedMesh>(result)) << std::get<ImportFault>(result).detail;
+    EXPECT_FALSE(std::get<ImportedMesh>(result).mesh.materials.at(0).is_glass);
+    EXPECT_THAT(std::get<ImportedMesh>(result).notes,
+                testing::Contains(testing::HasSubstr("\"pane\" is of glass")));
 }
 
 TEST(GltfEmission, LeavesAloneWhatItNeedNotChange)

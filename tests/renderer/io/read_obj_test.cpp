@@ -208,6 +208,27 @@ TEST(ReadObj, ReportsAMaterialWithoutColourWhereverItStandsInItsFile)
     EXPECT_LT(result.notes[0].size(), 200u);
 }
 
+TEST(ReadObj, TakesMaterialsWhoseModelIsGlassAsGlass)
+{
+    const Files files{{"a.mtl",
+                       "newmtl water\nKd 1 1 1\nillum 7\nNi 1.33\nd 0.1\n"
+                       "newmtl dense\nKd 1 1 1\nillum 4\nNi 99\n"
+                       "newmtl matt\nKd 1 1 1\nillum 2\nNi 1.5\nd 0.1\n"}};
+    const std::string body = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    const ImportedMesh result = mesh_of("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl water\n" +
+                                            body + "usemtl dense\n" + body + "usemtl matt\n" + body,
+                                        files);
+    const auto& materials = result.mesh.materials;
+    ASSERT_GE(materials.size(), 3u);
+    EXPECT_TRUE(materials[0].is_glass);
+    EXPECT_FALSE(materials[0].is_transparent) << "nothing of it is left out";
+    EXPECT_FLOAT_EQ(materials[0].ior, 1.33f);
+    EXPECT_TRUE(materials[1].is_glass);
+    EXPECT_FLOAT_EQ(materials[1].ior, 10);
+    EXPECT_FALSE(materials[2].is_glass);
+    EXPECT_TRUE(materials[2].is_transparent);
+}
+
 TEST(ReadObj, KeepsWhatItsMaterialsHaveThatIsNotModelled)
 {
     const Files files{{"a.mtl",

@@ -403,6 +403,37 @@ TEST(FactsOf, CountsOnlyMaterialsThatATriangleHas)
     EXPECT_EQ(facts.rough_materials, 2u);
 }
 
+TEST(MakePlan, TakesMeshesOfGlassForWhatTheyAre)
+{
+    renderer::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 1, 2}};
+    mesh.materials.resize(2);
+    mesh.materials[0].is_glass = true;
+    SceneDescription scene = one_mesh();
+    scene.lights.emplace_back(renderer::PointLight{});
+    const auto uses = [&](const std::string& name) {
+        const Plan plan = plan_of(scene, {renderer::facts_of(mesh)});
+        return std::any_of(plan.models.used.begin(), plan.models.used.end(), [&](const ModelChoice& choice) {
+            return choice.name == name;
+        });
+    };
+    EXPECT_TRUE(uses("dielectric_fresnel"));
+    EXPECT_FALSE(uses("rough_glass"));
+    EXPECT_FALSE(uses("diffuse"));
+    EXPECT_EQ(plan_of(scene, {renderer::facts_of(mesh)}).integrator, renderer::Integrator::whitted);
+    mesh.triangle_materials = {0, 1};
+    EXPECT_TRUE(uses("dielectric_fresnel"));
+    EXPECT_TRUE(uses("diffuse"));
+    mesh.materials[0].is_physical = true;
+    mesh.materials[0].roughness = 0.3f;
+    EXPECT_TRUE(uses("rough_glass"));
+    EXPECT_EQ(plan_of(scene, {renderer::facts_of(mesh)}).integrator, renderer::Integrator::path);
+    scene.materials.push_back({"own", renderer::DiffuseMaterial{}});
+    scene.objects[0].material = 0;
+    EXPECT_FALSE(uses("rough_glass")) << "the mesh's own materials are not shown";
+}
+
 TEST(MakePlan, CountsTrianglesThatShineAsLights)
 {
     renderer::Mesh mesh;
