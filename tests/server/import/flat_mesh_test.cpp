@@ -34,6 +34,9 @@ ImportedAsset tetrahedron()
     mesh.materials[0].color_map = renderer::TextureUse{.image = 0, .wrap = renderer::TextureWrap::mirror};
     mesh.materials[0].alpha_map = renderer::TextureUse{.image = 1, .channel = 3};
     mesh.materials[0].cutoff = 0.25f;
+    mesh.materials[2].is_glass = true;
+    mesh.materials[2].ior = 1.25f;
+    mesh.materials[2].absorption = {0, 1, 2};
     mesh.images = {{"red.png", {1, 1, 3, renderer::PixelType::whole_8, {}}},
                    {"bump.png", {1, 1, 1, renderer::PixelType::real_32, {}}}};
     mesh.images[0].image.bytes.append({std::byte{9}, std::byte{8}, std::byte{7}});
@@ -100,6 +103,9 @@ TEST(FlatMesh, GivesBackWhatWasWritten)
         EXPECT_EQ(asset.mesh.materials[i].is_transparent, i == 2);
         EXPECT_EQ(asset.mesh.materials[i].is_metal, i == 1);
         EXPECT_EQ(asset.mesh.materials[i].has_roughness, i == 2);
+        EXPECT_EQ(asset.mesh.materials[i].is_glass, i == 2);
+        EXPECT_EQ(asset.mesh.materials[i].ior, before.mesh.materials[i].ior);
+        EXPECT_EQ(asset.mesh.materials[i].absorption, before.mesh.materials[i].absorption);
     }
     EXPECT_EQ(asset.mesh.materials[0].textures, before.mesh.materials[0].textures);
     EXPECT_EQ(asset.mesh.materials[1].specular, before.mesh.materials[1].specular);
