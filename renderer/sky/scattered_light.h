@@ -7,7 +7,7 @@
 // Source  the iteration over orders of Bruneton, Neyret 2008, algorithm 4.1; discrete directions and azimuthal series
 //         instead of its four-dimensional table of radiance.
 // Errors  against Monte Carlo: reference/sky_test.cpp.
-// Memory  kExact 27 MB for four wavelengths, thrice while it is built.
+// Memory  exact 27 MB for four wavelengths, thrice while it is built.
 // Cost    building: 10 s of a core for four wavelengths (exact), a fifth of it (quick); then some 3 us a line of sight.
 // Threads the same bits however many build it; const: any number at once.
 #pragma once

@@ -4,10 +4,10 @@
 //         cosine between view and sun. The sun is a direction.
 // Units   L / E0, 1/sr: radiance over the sun's irradiance above the air.
 // Source  Nishita et al. 1993; Bruneton, Neyret 2008, eq. 6: quadrature on pieces cut at the closest approach, the edges
-//         of the planet's shadow and the cuts of the air, each halved until it agrees with its halves (kExact) or is smooth
-//         by the decay of its own Legendre series (kQuick).
-// Errors  some 1e-7 of the radiance (kExact), 1e-3 (kQuick).
-// Cost    kExact 0.2 to 2 ms; kQuick a fifteenth.
+//         of the planet's shadow and the cuts of the air, each halved until it agrees with its halves (exact) or is smooth
+//         by the decay of its own Legendre series (quick).
+// Errors  some 1e-7 of the radiance (exact), 1e-3 (quick).
+// Cost    exact 0.2 to 2 ms; quick a fifteenth.
 // Threads any number at once.
 #pragma once
 

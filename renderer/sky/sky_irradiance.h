@@ -1,7 +1,8 @@
 // Irradiance of a horizontal surface under the sky.
 //
 // Units   over the sun's irradiance above the air; of the upper half of directions, whatever the altitude.
-// Cost    24 x 17 lines of sight.
+// Errors  of the quadrature: a few thousandths up to g = 0.98.
+// Cost    32 x 20 lines of sight.
 #pragma once
 
 #include "renderer/sky/scattered_light.h"

@@ -240,7 +240,7 @@ TEST(GlassBody, WithinAnotherOfTheSameMeshIsABodyOfItsOwn)
         TestScene one = apart;
         apart.meshes = {balls.glass, balls.water};
         apart.description.objects.push_back(apart.description.objects[0]);
-        apart.description.objects[1].shape = MeshShape{1};
+        apart.description.objects[1].shape = MeshShape{.mesh = 1, .part = {}};
         one.meshes = {balls.both_in_one()};
         const RenderResult a = render_description(apart), b = render_description(one);
         EXPECT_EQ(tests::digest(a.film), tests::digest(b.film));

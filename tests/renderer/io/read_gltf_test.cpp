@@ -226,8 +226,7 @@ std::string tetrahedron_glb(const std::string& material)
     std::string bytes(48, '\0');
     for (const std::size_t at : {12u, 28u, 44u})
         bytes.replace(at, 4, std::string("\0\0\x80\x3f", 4));
-    for (const char corner : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3})
-        bytes += corner;
+    bytes += std::string("\0\2\1\0\1\3\0\3\2\1\2\3", 12);
     return glb(json, bytes);
 }
 
