@@ -25,7 +25,8 @@ std::vector<bool> used_materials(const Mesh& mesh)
 
 bool is_rough(const MeshMaterial& material)
 {
-    return material.is_physical && (static_cast<double>(material.roughness) >= kSmoothBelow || material.physical_map);
+    return material.is_physical &&
+           (static_cast<double>(material.roughness) >= kSmoothBelow || material.physical_map);
 }
 
 std::uint64_t shining_triangles(const Mesh& mesh)
