@@ -1,6 +1,7 @@
 #include "renderer/integrators/direct.h"
 
 #include "renderer/integrators/direct_lighting.h"
+#include "renderer/math/uninitialized.h"
 
 namespace renderer {
 
@@ -11,18 +12,19 @@ void direct_radiance(const Scene& scene,
                      const std::stop_token& stop,
                      FirstHits first)
 {
-    Ray rays[kMostSamples];
-    SceneHit hits[kMostSamples];
+    Uninitialized<Ray, kMostSamples> rays;
+    Uninitialized<SceneHit, kMostSamples> hits;
     for (std::size_t i = 0; i < samples.size(); ++i)
         rays[i] = samples[i].ray;
     tally.camera_rays += samples.size();
-    const std::uint64_t seen = scene.closest_hits({rays, samples.size()}, hits, RayKind::camera);
-    note_first_hits(scene, samples, hits, seen, first);
+    const std::uint64_t seen =
+        scene.closest_hits(rays.first(samples.size()), hits.first(samples.size()), RayKind::camera);
+    note_first_hits(scene, samples, hits.first(samples.size()), seen, first);
 
-    Surface surfaces[kMostSamples];
+    Uninitialized<Surface, kMostSamples> surfaces;
     BsdfRoom rooms[kMostSamples];
-    LitPoint points[kMostSamples];
-    Rgb found[kMostSamples];
+    Uninitialized<LitPoint, kMostSamples> points;
+    Uninitialized<Rgb, kMostSamples> found;
     std::size_t of_point[kMostSamples], count = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         radiance[i] = scene.environment();
@@ -35,7 +37,7 @@ void direct_radiance(const Scene& scene,
         found[count] = surfaces[count].bsdf->ambient;
         of_point[count++] = i;
     }
-    DirectLighting(scene, false, tally, stop).gather({points, count}, {found, count});
+    DirectLighting(scene, false, tally, stop).gather(points.first(count), found.first(count));
     for (std::size_t i = 0; i < count; ++i)
         radiance[of_point[i]] = found[i];
 }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "renderer/integrators/radiance.h"
+#include "renderer/math/uninitialized.h"
 
 #include <span>
 #include <stop_token>
@@ -57,8 +58,8 @@ private:
     RayTally& tally_;
     const std::stop_token& stop_;
     std::size_t count_ = 0;
-    Ray rays_[kMostSamples];
-    Rgb light_[kMostSamples];
+    Uninitialized<Ray, kMostSamples> rays_;
+    Uninitialized<Rgb, kMostSamples> light_;
     std::size_t point_[kMostSamples];
 };
 

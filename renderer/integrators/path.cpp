@@ -3,6 +3,7 @@
 #include "renderer/color/strongest.h"
 #include "renderer/integrators/direct_lighting.h"
 #include "renderer/integrators/surface_step.h"
+#include "renderer/math/uninitialized.h"
 
 #include <algorithm>
 #include <limits>
@@ -60,7 +61,7 @@ public:
         count_ = samples.size();
         if (count_ == 0 || stop_.stop_requested()) return;
         const std::uint64_t met = step(RayKind::camera);
-        note_first_hits(scene_, samples, hits_, met, first);
+        note_first_hits(scene_, samples, hits_.first(samples.size()), met, first);
         while (count_ != 0 && !stop_.stop_requested())
             step(RayKind::other);
     }
@@ -89,7 +90,7 @@ private:
         for (std::size_t i = 0; i < count_; ++i)
             rays_[i] = paths_[i].ray;
         (kind == RayKind::camera ? tally_.camera_rays : tally_.bounce_rays) += count_;
-        const std::uint64_t met = scene_.closest_hits({rays_, count_}, hits_, kind);
+        const std::uint64_t met = scene_.closest_hits(rays_.first(count_), hits_.first(count_), kind);
         turns_ = 0;
         for (std::size_t i = 0; i < count_; ++i)
             if ((met >> i & 1) != 0)
@@ -162,7 +163,7 @@ private:
         }
         if (limits_.search == LightSearch::material) return;
         const bool both = limits_.search == LightSearch::both;
-        DirectLighting(scene_, both, tally_, stop_).gather({points_, lit}, {added_, lit});
+        DirectLighting(scene_, both, tally_, stop_).gather(points_.first(lit), added_.first(lit));
         for (std::size_t i = 0; i < lit; ++i)
             add(*of_point_[i], added_[i]);
     }
@@ -237,13 +238,13 @@ private:
     RayTally& tally_;
     const std::stop_token& stop_;
     std::size_t count_ = 0, turns_ = 0;
-    Path paths_[kMostSamples];
-    Ray rays_[kMostSamples];
-    SceneHit hits_[kMostSamples];
-    Turn turn_[kMostSamples];
-    LitPoint points_[kMostSamples];
+    Uninitialized<Path, kMostSamples> paths_;
+    Uninitialized<Ray, kMostSamples> rays_;
+    Uninitialized<SceneHit, kMostSamples> hits_;
+    Uninitialized<Turn, kMostSamples> turn_;
+    Uninitialized<LitPoint, kMostSamples> points_;
     Path* of_point_[kMostSamples];
-    Rgb added_[kMostSamples];
+    Uninitialized<Rgb, kMostSamples> added_;
 };
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "renderer/color/strongest.h"
 #include "renderer/integrators/direct_lighting.h"
 #include "renderer/integrators/surface_step.h"
+#include "renderer/math/uninitialized.h"
 
 #include <algorithm>
 #include <vector>
@@ -46,10 +47,11 @@ public:
         RayKind kind = RayKind::camera;
         for (std::size_t done = 0; done < waiting_.size() && !stop_.stop_requested();) {
             const std::size_t count = std::min(waiting_.size() - done, kMostSamples);
-            std::copy_n(waiting_.begin() + static_cast<std::ptrdiff_t>(done), count, branches_);
+            std::copy_n(waiting_.begin() + static_cast<std::ptrdiff_t>(done), count, branches_.data());
             const std::uint64_t met = follow(count, kind);
             // The samples are one run: no camera ray is left after it.
-            if (kind == RayKind::camera) note_first_hits(scene_, samples, hits_, met, first);
+            if (kind == RayKind::camera)
+                note_first_hits(scene_, samples, hits_.first(samples.size()), met, first);
             kind = RayKind::other;
             done += count;
             if (done < kKept || 2 * done < waiting_.size()) continue;
@@ -65,7 +67,7 @@ private:
         for (std::size_t i = 0; i < count; ++i)
             rays_[i] = branches_[i].ray;
         (kind == RayKind::camera ? tally_.camera_rays : tally_.bounce_rays) += count;
-        const std::uint64_t met = scene_.closest_hits({rays_, count}, hits_, kind);
+        const std::uint64_t met = scene_.closest_hits(rays_.first(count), hits_.first(count), kind);
         std::size_t lit = 0;
         for (std::size_t i = 0; i < count; ++i) {
             found_[i] = {};
@@ -79,7 +81,7 @@ private:
             points_[i] = {&surfaces_[branch], wo_[branch], branches_[branch].of, branches_[branch].depth};
             added_[i] = {};
         }
-        DirectLighting(scene_, false, tally_, stop_).gather({points_, lit}, {added_, lit});
+        DirectLighting(scene_, false, tally_, stop_).gather(points_.first(lit), added_.first(lit));
         for (std::size_t i = 0; i < lit; ++i)
             found_[of_point_[i]] += added_[i];
         for (std::size_t i = 0; i < count; ++i)
@@ -156,15 +158,15 @@ private:
     RayTally& tally_;
     const std::stop_token& stop_;
     std::vector<Branch> waiting_;
-    Branch branches_[kMostSamples];
-    Ray rays_[kMostSamples];
-    SceneHit hits_[kMostSamples];
-    Surface surfaces_[kMostSamples];
+    Uninitialized<Branch, kMostSamples> branches_;
+    Uninitialized<Ray, kMostSamples> rays_;
+    Uninitialized<SceneHit, kMostSamples> hits_;
+    Uninitialized<Surface, kMostSamples> surfaces_;
     BsdfRoom rooms_[kMostSamples]; // of materials where pictures give them
     Vec3f wo_[kMostSamples];
-    Bsdf glass_[kMostSamples]; // with the eta of its boundary
-    Rgb found_[kMostSamples], added_[kMostSamples];
-    LitPoint points_[kMostSamples];
+    Uninitialized<Bsdf, kMostSamples> glass_; // with the eta of its boundary
+    Uninitialized<Rgb, kMostSamples> found_, added_;
+    Uninitialized<LitPoint, kMostSamples> points_;
     std::size_t of_point_[kMostSamples];
 };
 

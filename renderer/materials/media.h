@@ -9,7 +9,6 @@
 
 #include "renderer/materials/bsdf.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -25,19 +24,6 @@ struct BodyId {
 class Media {
 public:
     static constexpr std::size_t kMost = 8;
-
-    Media() = default;
-    // Most paths are inside of nothing.
-    Media(const Media& other) : count_(other.count_)
-    {
-        std::copy_n(other.bodies_.begin(), count_, bodies_.begin());
-    }
-    Media& operator=(const Media& other)
-    {
-        count_ = other.count_;
-        std::copy_n(other.bodies_.begin(), count_, bodies_.begin());
-        return *this;
-    }
 
     struct Boundary {
         bool is_real = true; // else light passes unbent
