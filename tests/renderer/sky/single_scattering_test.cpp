@@ -136,7 +136,10 @@ TEST(SingleScattering, WithoutAirIsBlackAndWithVeryMuchIsFinite)
 {
     AtmosphereDescription d = atmosphere_preset(AtmospherePreset::reference_r);
     d.rayleigh.scattering = {0, 0, 0};
-    EXPECT_EQ(blue(make_air(d), SkyGeometry::from_angles_deg(0, 30, 60, 0)), 0);
+    const Air none = make_air(d);
+    EXPECT_EQ(blue(none, SkyGeometry::from_angles_deg(0, 30, 60, 0)), 0);
+    for (const double mu : {1.0, 0.5, 0.0})
+        EXPECT_EQ(none.transmittance(2, columns_to_top(none, 0, mu).columns), 1) << mu;
     d.rayleigh.scattering = {1.25, 1.25, 1.25}; // an optical depth of 1e4
     const Air thick = make_air(d);
     for (const double altitude : {0.0, 30'000.0, 50'000.0})
