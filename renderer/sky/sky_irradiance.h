@@ -1,7 +1,7 @@
 // Irradiance of a horizontal surface under the sky.
 //
 // Units   over the sun's irradiance above the air; of the upper half of directions, whatever the altitude.
-// Errors  of the quadrature: a few thousandths up to g = 0.98.
+// Errors  of the quadrature: 4e-3 of the light scattered once, at g = 0.95.
 // Cost    32 x 20 lines of sight.
 #pragma once
 

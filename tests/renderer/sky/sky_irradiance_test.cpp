@@ -1,6 +1,7 @@
+#include "renderer/sky/sky_irradiance.h"
+
 #include "renderer/math/transcendental.h"
 #include "renderer/sky/air.h"
-#include "renderer/sky/sky_irradiance.h"
 
 #include <gtest/gtest.h>
 
