@@ -1,7 +1,6 @@
-#include "renderer/sky/sky_irradiance.h"
-
 #include "renderer/math/transcendental.h"
 #include "renderer/sky/air.h"
+#include "renderer/sky/sky_irradiance.h"
 
 #include <gtest/gtest.h>
 
