@@ -114,7 +114,7 @@ bool trace_fan(
     found_in_fan = fan_walk.walk();
     // Rays that meet next to nothing in any case say nothing of the nearest hit's cost.
     if (mesh.fans != nullptr && (kAnyHit || fan_walk.met_many()))
-        (kAnyHit ? mesh.fans->any : mesh.fans->nearest).tell(!fan_walk.gave_up());
+        mesh.fans->of(kAnyHit).tell(!fan_walk.gave_up());
     if (!fan_walk.gave_up()) return true;
     if (!kAnyHit) { // rays that stand far apart among small triangles
         trace_apart<kAnyHit>(mesh, rays, count, hits);
@@ -144,7 +144,7 @@ template <bool kAnyHit>
 std::uint64_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
     if (mesh.nodes == nullptr) return 0;
-    if (mesh.fans != nullptr && !(kAnyHit ? mesh.fans->any : mesh.fans->nearest).worth_trying(rays[0])) {
+    if (mesh.fans != nullptr && !mesh.fans->of(kAnyHit).worth_trying(rays[0])) {
         trace_apart<kAnyHit>(mesh, rays, count, hits);
         return found(hits, count);
     }

@@ -47,6 +47,8 @@ private:
 // hits some: these are worth trying where a ninth of them pay, those where two thirds do.
 struct alignas(64) FanWalks {
     SharedWalks nearest{8, 4}, any{1, 8};
+
+    SharedWalks& of(bool any_hit) { return any_hit ? any : nearest; }
 };
 
 } // namespace renderer

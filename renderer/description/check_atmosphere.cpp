@@ -41,6 +41,12 @@ bool positive(double x)
     return x > 0 && std::isfinite(x);
 }
 
+bool all_differ(std::vector<double> values)
+{
+    std::sort(values.begin(), values.end());
+    return std::adjacent_find(values.begin(), values.end()) == values.end();
+}
+
 } // namespace
 
 std::vector<Fault> check_atmosphere(const AtmosphereDescription& a, const std::string& pointer)
@@ -53,6 +59,10 @@ std::vector<Fault> check_atmosphere(const AtmosphereDescription& a, const std::s
                "/wavelengths_nm",
                "out_of_range",
                "give 1 to " + std::to_string(kMostWavelengths) + " wavelengths above 0");
+    check.need(all_differ(a.wavelengths_nm),
+               "/wavelengths_nm",
+               "conflict",
+               "a wavelength is named once: coefficients and colours are one for each");
     check.need(
         positive(a.planet.radius_m), "/planet/radius_m", "out_of_range", "a planet's radius is above 0");
     check.need(std::isfinite(a.planet.top_m) && a.planet.top_m > a.planet.radius_m,

@@ -10,6 +10,7 @@
 #include "renderer/materials/bsdf.h"
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 
@@ -18,7 +19,7 @@ namespace renderer {
 // Parts of one object that have materials of their own are bodies apart.
 struct BodyId {
     std::uint32_t instance = 0xffffffff, material = 0xffffffff;
-    friend constexpr bool operator==(BodyId, BodyId) = default;
+    friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
 };
 
 class Media {

@@ -6,6 +6,8 @@
 #include "renderer/plan/number_in_words.h"
 #include "renderer/plan/world_bounds.h"
 #include "renderer/sky/air.h"
+#include "renderer/sky/color_error.h"
+#include "renderer/sky/standing.h"
 
 #include <algorithm>
 #include <array>
@@ -85,14 +87,6 @@ most_off_behind_mirrors(const SceneDescription& scene, std::span<const MeshFacts
     return most;
 }
 
-// How far the camera lies below the ground of the planet, whose curve it may be aside on; not above 0: it does not.
-double depth_below_ground(const AtmosphereDescription& a, const Vec3d& eye)
-{
-    const double h = a.altitude_m + eye.y, across2 = eye.x * eye.x + eye.z * eye.z,
-                 radius = a.planet.radius_m;
-    return -(across2 + h * (2 * radius + h)) / (radius + std::sqrt(across2 + (radius + h) * (radius + h)));
-}
-
 // Extinction per metre at the wavelength nearest to 550 nm, at most, from an altitude upwards.
 double most_extinction(const Air& air, double altitude)
 {
@@ -105,6 +99,25 @@ double most_extinction(const Air& air, double altitude)
     return air.optical_depth(static_cast<std::size_t>(nearest - air.wavelength_nm.begin()), density);
 }
 
+// What the choice of wavelengths costs.
+std::string colors_in_words(const AtmosphereDescription& a, double altitude, double mu_sun)
+{
+    constexpr double kMuchOff = 0.1;
+    constexpr std::size_t kDozen = 12;
+    const std::size_t n = a.wavelengths_nm.size();
+    const std::string how = n == 3
+                                ? "three stand for red, green and blue as they are"
+                                : std::to_string(n) + (n == 1 ? ": all light is of one colour"
+                                                              : " are weighted by the eye's colour matching");
+    const std::optional<ColorError> error = color_error(a, altitude, mu_sun);
+    if (!error)
+        return how + "; how far off their colours are cannot be told: the coefficients are listed one by "
+                     "one, or no air is lit";
+    return how + "; against 36 of them the sky's colours are " + number_in_words(100 * error->sky) +
+           " % off and the sun's " + number_in_words(100 * error->sun) + " % (rms, light scattered once)" +
+           (std::max(error->sky, error->sun) > kMuchOff && n < kDozen ? "; more of them come nearer" : "");
+}
+
 } // namespace
 
 std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
@@ -114,11 +127,15 @@ std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
 {
     const AtmosphereDescription* const a = atmosphere_of(scene);
     if (a == nullptr || !is_lit(integrator)) return std::nullopt;
+    constexpr double kExactTableError = 0.001;
     SkyPlan plan;
+    if (a->mode == SkyMode::exact) plan.table_error = kExactTableError;
     plan.mode = a->mode == SkyMode::automatic ? SkyMode::fast : a->mode;
     models.used.push_back(
         {"atmosphere",
-         std::string("sky and sun by the air's scattering, from a table whose error the report tells; ") +
+         "sky and sun by the air's scattering, from a table that is refined until it is " +
+             number_in_words(100 * plan.table_error) +
+             " % from quadrature, twice at most, and whose error the report tells; " +
              (a->mode == SkyMode::automatic ? "`mode` auto: the quick tables are exact enough for pictures"
               : a->mode == SkyMode::fast    ? "`mode` asks for the quick tables"
                                             : "`mode` asks for the exact ones")});
@@ -130,11 +147,14 @@ std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
                                   "`scattering` asks for single: 7 % (red) to 38 % (blue) "
                                   "of a clear sky's irradiance, nearly all of twilight"});
 
-    const double below = depth_below_ground(*a, scene.camera->position);
-    if (below > 0)
+    const Standing eye(a->planet.radius_m, a->altitude_m, scene.camera->position);
+    if (eye.above_ground < 0)
         models.used.push_back({"sky_from_the_ground",
-                               "warning: the camera lies " + number_in_words(below) +
+                               "warning: the camera lies " + number_in_words(-eye.above_ground) +
                                    " m below the planet's ground: it sees the sky of the ground above it"});
+
+    models.used.push_back(
+        {"wavelengths", colors_in_words(*a, eye.altitude(), dot(eye.up, direction_of_sun(a->sun)))});
 
     const Depth depth = depth_of(scene, meshes);
     const Air air = make_air(*a);

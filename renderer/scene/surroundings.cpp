@@ -50,7 +50,7 @@ std::shared_ptr<const SkyLight> sky_light(const SceneDescription& scene,
     std::shared_ptr<const Sky> sky = (skies != nullptr ? *skies : alone).get(air, pool, stop);
     if (!sky) return nullptr;
     return std::make_shared<const SkyLight>(
-        air, std::move(sky), scene.camera->position, plan.sky->far_m, pool);
+        air, std::move(sky), scene.camera->position, plan.sky->far_m, pool, plan.sky->table_error);
 }
 
 std::shared_ptr<const EnvironmentMap> light_from(const SkyLight& sky, ThreadPool& pool, SceneLights& lights)
@@ -83,7 +83,7 @@ Media media_around(Vec3d point,
     constexpr int kMostSurfaces = 4096; // glass that was not closed might never end
     constexpr Vec3d kAnyWay{0.5376, 0.7312, 0.4201};
     std::vector<std::pair<BodyId, const GlassMedium*>> left;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> entered; // by instance and material
+    std::map<BodyId, int> entered;
     Ray ray{point, kAnyWay};
     for (int i = 0; i < kMostSurfaces; ++i) {
         const std::optional<SceneHit> hit = tree.closest_hit(ray);
@@ -92,7 +92,7 @@ Media media_around(Vec3d point,
         const BodyId body{hit->instance, looks[hit->instance].bsdf_of(hit->primitive)};
         const Bsdf& bsdf = bsdfs[body.material];
         if (!transmits(bsdf)) continue;
-        int& times = entered[{body.instance, body.material}];
+        int& times = entered[body];
         if (dot(hit->point.normal, kAnyWay) < 0)
             ++times;
         else if (times > 0)

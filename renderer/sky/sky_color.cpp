@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 namespace renderer {
 
@@ -34,6 +35,24 @@ double sunlight(double nm)
     return 1 / (um5 * (exp(14387.77 / (um * 5778)) - 1));
 }
 
+// How much of the spectrum each wavelength stands for, in nm: half of the way to its neighbours, and as far beyond the last.
+std::vector<double> widths_of(const std::vector<double>& wavelengths_nm)
+{
+    const std::size_t n = wavelengths_nm.size();
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return wavelengths_nm[a] < wavelengths_nm[b];
+    });
+    std::vector<double> widths(n, n == 1 ? 1.0 : 0.0);
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        const double half = (wavelengths_nm[order[i + 1]] - wavelengths_nm[order[i]]) / 2;
+        widths[order[i]] += i == 0 ? 2 * half : half;
+        widths[order[i + 1]] += i + 2 == n ? 2 * half : half;
+    }
+    return widths;
+}
+
 // One a wavelength; each channel sums to 1.
 std::vector<std::array<double, 3>> weights_of(const std::vector<double>& wavelengths_nm)
 {
@@ -49,10 +68,11 @@ std::vector<std::array<double, 3>> weights_of(const std::vector<double>& wavelen
         return weights;
     }
     std::array<double, 3> sum{};
+    const std::vector<double> widths = widths_of(wavelengths_nm);
     for (std::size_t w = 0; w < n; ++w) {
         weights[w] = rec709_of(wavelengths_nm[w]);
         for (std::size_t c = 0; c < 3; ++c)
-            sum[c] += weights[w][c] *= sunlight(wavelengths_nm[w]);
+            sum[c] += weights[w][c] *= sunlight(wavelengths_nm[w]) * widths[w];
     }
     for (auto& weight : weights)
         for (std::size_t c = 0; c < 3; ++c)

@@ -1,7 +1,7 @@
 // SkyColor: from the wavelengths of an atmosphere to linear Rec. 709.
 //
 // Three wavelengths stand for red, green and blue as they are, longest first; any other number is weighted by the eye's
-// colour matching and the sun's spectrum, and white is the sun above the air: a sky that took nothing from its light
+// colour matching, the sun's spectrum and its distance to its neighbours, in any order, and white is the sun above the air: a sky that took nothing from its light
 // would have the colour of the irradiance.
 //
 // Source  Wyman, Sloan, Shirley, "Simple Analytic Approximations to the CIE XYZ Color Matching Functions", 2013; the

@@ -6,8 +6,10 @@
 #include "renderer/sky/optical_depth.h"
 #include "renderer/sky/phase.h"
 #include "renderer/sky/single_scattering.h"
+#include "renderer/sky/sky_directions.h"
 #include "renderer/sky/sky_rows.h"
 #include "renderer/sky/sky_sun.h"
+#include "renderer/sky/standing.h"
 
 #include <algorithm>
 #include <array>
@@ -21,27 +23,6 @@ namespace {
 
 constexpr std::size_t kPointsBetween = 20;
 
-// Where a point of the world stands over the planet, `altitude` above whose ground is the world's origin.
-struct Standing {
-    double altitude = 0, radius = 1;
-    Vec3d up;
-
-    Standing(double planet_radius, double origin_altitude, Vec3d p)
-    {
-        const double h = origin_altitude + p.y, across2 = p.x * p.x + p.z * p.z;
-        radius = std::sqrt(across2 + (planet_radius + h) * (planet_radius + h));
-        altitude = std::max(0.0, (across2 + h * (2 * planet_radius + h)) / (planet_radius + radius));
-        up = Vec3d{p.x, planet_radius + h, p.z} / radius;
-    }
-};
-
-Vec3d direction_of_sun(const SkySunDescription& sun)
-{
-    const auto [sine, cosine] = sin_cos_deg(sun.elevation_deg);
-    const auto [east, north] = sin_cos_deg(sun.azimuth_deg);
-    return {cosine * east, sine, -cosine * north};
-}
-
 } // namespace
 
 SkyLight::SkyLight(const AtmosphereDescription& description, ThreadPool& pool, std::stop_token stop)
@@ -53,7 +34,8 @@ SkyLight::SkyLight(const AtmosphereDescription& description,
                    std::shared_ptr<const Sky> sky,
                    Vec3d eye,
                    double far_m,
-                   ThreadPool& pool)
+                   ThreadPool& pool,
+                   double most_table_error)
     : sky_(std::move(sky)), color_(sky_->air().wavelength_nm, description.sun.irradiance),
       origin_altitude_(description.altitude_m), sun_radius_(description.sun.angular_radius_deg * (kPi / 180)),
       limb_darkening_(description.sun.limb_darkening), to_sun_(direction_of_sun(description.sun))
@@ -61,7 +43,7 @@ SkyLight::SkyLight(const AtmosphereDescription& description,
     const Air& air = sky_->air();
     const Standing standing(air.radius_m, origin_altitude_, eye);
     up_ = standing.up;
-    altitude_ = standing.altitude;
+    altitude_ = standing.altitude();
     mu_sun_ = std::clamp(dot(up_, to_sun_), -1.0, 1.0);
     // Its azimuth, also where it is in the zenith.
     const auto [east, north] = sin_cos_deg(description.sun.azimuth_deg);
@@ -70,7 +52,7 @@ SkyLight::SkyLight(const AtmosphereDescription& description,
                 : length(across) > 1e-9                     ? normalize(across)
                 : length(along - up_ * dot(up_, along)) > 0 ? normalize(along - up_ * dot(up_, along))
                                                             : basis_around(up_).first;
-    make_view(pool);
+    make_view(most_table_error, pool);
     if (!(far_m > 0)) return;
     // From beyond, a way begins where the air is thinnest and ends where it is thickest.
     AerialSize size;
@@ -78,14 +60,14 @@ SkyLight::SkyLight(const AtmosphereDescription& description,
     aerial_.emplace(air, sky_->columns(), sky_->scattered(), altitude_, mu_sun_, far_m, pool, size);
 }
 
-void SkyLight::make_view(ThreadPool& pool)
+void SkyLight::make_view(double most_error, ThreadPool& pool)
 {
     SkyViewSize size;
     constexpr int kMostTimes = 3;
     for (int times = 0; times < kMostTimes; ++times) {
         view_.emplace(sky_->air(), sky_->columns(), sky_->scattered(), altitude_, mu_sun_, pool, size);
         table_error_ = error_of(*view_, pool);
-        if (table_error_ <= kTableError) return;
+        if (table_error_ <= most_error) return;
         size.rows *= 2;
         size.azimuths = 2 * size.azimuths - 1;
     }
@@ -93,29 +75,22 @@ void SkyLight::make_view(ThreadPool& pool)
 
 double SkyLight::error_of(const SkyView& view, ThreadPool& pool) const
 {
-    // A spiral: directions as far apart as so many can be, over all that has air before it.
     constexpr std::size_t kDirections = 64;
-    constexpr double kGoldenTurn = 0.6180339887498949;
     struct Pair {
         Spectrum exact{}, found{};
     };
     const Air& air = sky_->air();
+    const SkyDirections directions(air, altitude_, mu_sun_, kDirections);
     std::vector<Pair> pairs(kDirections);
     pool.run(kDirections, [&](std::size_t i, unsigned) {
-        const double share = (static_cast<double>(i) + 0.5) / kDirections;
-        const double mu = -1 + (view.rows().upper() + 1) * share;
-        const double turn = static_cast<double>(i) * kGoldenTurn;
-        const double cosine = sin_cos_deg(360 * (turn - std::floor(turn))).second;
-        const double sines = std::sqrt(std::max(0.0, (1 - mu * mu) * (1 - mu_sun_ * mu_sun_)));
-        const SkyGeometry geometry{
-            altitude_, mu, mu_sun_, std::clamp(mu * mu_sun_ + sines * cosine, -1.0, 1.0)};
-        const PlanetRay ray(air.radius_m, altitude_, mu);
+        const auto [geometry, cosine] = directions[i];
+        const PlanetRay ray(air.radius_m, altitude_, geometry.mu);
         const SingleScattering once = single_scattering(air, ray, geometry, SkyPrecision::exact);
         if (const ScatteredLight* scattered = sky_->scattered())
             pairs[i].exact = scattered->radiance(scattered->path(ray), geometry.mu_sun, geometry.nu);
         for (std::size_t w = 0; w < air.wavelengths; ++w)
             pairs[i].exact[w] += once.air[w] + once.ground[w];
-        pairs[i].found = view.radiance(mu, cosine);
+        pairs[i].found = view.radiance(geometry.mu, cosine);
     });
     double worst = 0;
     for (std::size_t w = 0; w < air.wavelengths; ++w) {
@@ -205,7 +180,7 @@ SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
     const double mu = std::clamp(dot(eye.up, view), -1.0, 1.0),
                  mu_sun = std::clamp(dot(eye.up, to_sun_), -1.0, 1.0);
     const double nu = std::clamp(dot(view, to_sun_), -1.0, 1.0);
-    const PlanetRay ray(air.radius_m, eye.altitude, mu);
+    const PlanetRay ray(air.radius_m, eye.altitude(), mu);
     const PlanetRay::Reach reach = ray.reach(air.height_m);
     const double begin = reach.begin, stop = std::min(ray.start() + distance, reach.end);
     const Columns way = columns_along(air, ray, begin, stop);
@@ -232,7 +207,7 @@ SkyLight::Between SkyLight::between(Vec3d from, Vec3d to) const
         const double end_mu = std::clamp(dot(end.up, view), -1.0, 1.0);
         const Spectrum all = scattered->radiance(scattered->path(ray), mu_sun, nu);
         const Spectrum beyond =
-            scattered->radiance(scattered->path(PlanetRay(air.radius_m, end.altitude, end_mu)),
+            scattered->radiance(scattered->path(PlanetRay(air.radius_m, end.altitude(), end_mu)),
                                 std::clamp(dot(end.up, to_sun_), -1.0, 1.0),
                                 nu);
         for (std::size_t w = 0; w < air.wavelengths; ++w)

@@ -36,11 +36,13 @@ public:
     // The description has no faults (check_atmosphere). From the world's origin.
     SkyLight(const AtmosphereDescription& description, ThreadPool& pool, std::stop_token stop = {});
     // `sky` is that of the description. `far_m`: how far things are seen through the air; 0: air_before() is not asked.
+    // `most_table_error`: what table_error() is to come to.
     SkyLight(const AtmosphereDescription& description,
              std::shared_ptr<const Sky> sky,
              Vec3d eye,
              double far_m,
-             ThreadPool& pool);
+             ThreadPool& pool,
+             double most_table_error = kTableError);
 
     // From the eye; `direction` is a unit vector. Without the sun's disk.
     [[nodiscard]] Rgb radiance(Vec3d direction) const;
@@ -72,15 +74,15 @@ public:
     [[nodiscard]] bool is_beyond_air() const { return altitude_ > sky_->air().height_m; } // the eye
 
     // Of radiance() against quadrature in 64 directions that have air or ground: root mean square over the mean, the
-    // worst wavelength's. Rows and columns are doubled until it is below kTableError, twice at most.
-    static constexpr double kTableError = 0.005;
+    // worst wavelength's. Rows and columns are doubled until it is what was asked for, twice at most.
+    static constexpr double kTableError = 0.005; // where nothing else is asked for
     [[nodiscard]] double table_error() const { return table_error_; }
 
 private:
     [[nodiscard]] double limb(double share_of_radius2) const;
 
     [[nodiscard]] double azimuth_cosine(Vec3d direction, double mu) const;
-    void make_view(ThreadPool& pool);
+    void make_view(double most_error, ThreadPool& pool);
     [[nodiscard]] double error_of(const SkyView& view, ThreadPool& pool) const;
 
     std::shared_ptr<const Sky> sky_;

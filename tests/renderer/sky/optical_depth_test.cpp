@@ -59,7 +59,7 @@ TEST(OpticalDepth, OfAWayIsTheSumOfItsParts)
                     return air.transmittance(w, columns_along(air, ray, a, b));
                 };
                 const double whole = t(reach.begin, reach.end);
-                EXPECT_NEAR(t(reach.begin, middle) * t(middle, reach.end), whole, 1e-8 * whole) << perigee;
+                EXPECT_NEAR(t(reach.begin, middle) * t(middle, reach.end), whole, 1e-12 * whole) << perigee;
                 EXPECT_LE(t(reach.begin, middle), 1);
             }
             const double depth = air.optical_depth(0, columns_along(air, ray, reach.begin, middle));

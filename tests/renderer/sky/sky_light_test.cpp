@@ -1,4 +1,5 @@
 #include "renderer/math/transcendental.h"
+#include "renderer/sky/optical_depth.h"
 #include "renderer/sky/sky_light.h"
 #include "tests/support/random_numbers.h"
 
@@ -79,6 +80,9 @@ TEST(SkyLight, SunsDiskHoldsItsIrradiance)
         }
         const double solid_angle = kPi * sin_cos(radius).first * sin_cos(radius).first;
         EXPECT_NEAR(sum * solid_angle / static_cast<double>(light.sun_irradiance().g), 1, 1e-4);
+        const Air air = make_air(d);
+        const double through = air.transmittance(1, columns_to_top(air, 0, sin_cos_deg(30).second).columns);
+        EXPECT_NEAR(sum * solid_angle / (static_cast<double>(d.sun.irradiance.g) * through), 1, 1e-4);
         EXPECT_EQ(light.sun_radiance(direction(60.3, 0)).g, 0);
         EXPECT_EQ(light.sun_radiance(direction(-60, 180)).g, 0);
     }

@@ -53,9 +53,11 @@ protected:
     bool comes_to_pass(const std::function<bool(const GuardedServer::Load&)>& wanted) const
     {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-        while (!wanted(server_->load()) && std::chrono::steady_clock::now() < end)
+        while (!wanted(server_->load())) { // asked once: it may pass again
+            if (std::chrono::steady_clock::now() > end) return false;
             std::this_thread::sleep_for(milliseconds(5));
-        return wanted(server_->load());
+        }
+        return true;
     }
     void SetUp() override { start({}); }
     void TearDown() override
