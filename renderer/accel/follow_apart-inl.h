@@ -12,6 +12,7 @@
 
 #include "renderer/accel/exact_test.h"
 #include "renderer/accel/prepare_apart-inl.h"
+#include "renderer/accel/triangle_lanes-inl.h"
 
 #include <algorithm>
 #include <bit>
@@ -256,11 +257,7 @@ public:
             visit_nodes();
             visit_leaves();
         }
-        if (kAnyHit) return;
-        for (left = run_.rays; left != 0; left &= left - 1) {
-            const auto ray = static_cast<unsigned>(std::countr_zero(left));
-            if (found_[ray] != 0) decide(ray);
-        }
+        if (!kAnyHit) settle();
     }
 
 private:
@@ -270,6 +267,16 @@ private:
         float least;
     };
     static constexpr unsigned kCandidates = 8, kInFlight = 16;
+
+    // A ray that the double test is asked about, and with which triangle.
+    struct Asked {
+        unsigned ray;
+        std::uint32_t place;
+    };
+    using D = TriangleLanes::D;
+    using V = TriangleLanes::V;
+    static constexpr unsigned kTogether = TriangleLanes::kLanes;
+    static constexpr std::size_t kRow = sizeof(TriangleBlock::corners[0][0]); // LoneRays::Axes count bytes
 
     // In two rounds: nothing in the first depends on a branch, and what the second branches on is known by then.
     HWY_INLINE void visit_nodes()
@@ -375,23 +382,110 @@ private:
     // Tests the candidates that are left.
     HWY_NOINLINE void decide(unsigned ray)
     {
-        const Ray& r = rays_[ray];
-        const double power = run_.power[ray], units = run_.units[ray];
-        const WatertightRay<double> exact(r.origin * static_cast<double>(mesh_.scale), r.direction * power);
-        for (unsigned i = 0; i < found_[ray]; ++i) {
-            const Candidate& c = candidates_[ray][i];
-            if (c.least > run_.end[ray]) continue;
-            improve_hit(exact,
-                        r.t_min * units,
-                        r.t_max * units,
-                        mesh_,
-                        mesh_.leaves[c.place / TriangleBlock::kLanes],
-                        c.place % TriangleBlock::kLanes,
-                        best_[ray]);
-        }
+        for (unsigned i = 0; i < found_[ray]; ++i)
+            if (!(candidates_[ray][i].least > run_.end[ray]))
+                improve({ray, candidates_[ray][i].place}, best_[ray]);
         found_[ray] = 0;
         if (best_[ray].primitive != TriangleBlock::kNone)
             run_.end[ray] = std::min(run_.end[ray], run_.end_for(best_[ray].t, ray));
+    }
+
+    // The candidates that are left, of all rays.
+    HWY_INLINE void settle()
+    {
+        Asked asked[kTogether];
+        unsigned count = 0;
+        for (std::uint64_t left = run_.rays; left != 0; left &= left - 1) {
+            const auto ray = static_cast<unsigned>(std::countr_zero(left));
+            for (unsigned i = 0; i < found_[ray]; ++i) {
+                if (candidates_[ray][i].least > run_.end[ray]) continue;
+                asked[count++] = {ray, candidates_[ray][i].place};
+                if (count < kTogether) continue;
+                settle_some(asked, count);
+                count = 0;
+            }
+        }
+        if (count != 0) settle_some(asked, count);
+    }
+
+    HWY_INLINE void settle_some(const Asked* asked, unsigned count)
+    {
+        const D d;
+        const hn::Rebind<float, D> f;
+        const bool has_residuals = mesh_.residuals != nullptr;
+        alignas(64) float corners[9][kTogether], lacking[9][kTogether];
+        alignas(64) double origins[3][kTogether], directions[3][kTogether];
+        alignas(64) double powers[kTogether], units[kTogether], from[kTogether], to[kTogether];
+        for (unsigned i = 0; i < kTogether; ++i) {
+            const Asked& one = asked[i < count ? i : 0];
+            const Ray& ray = rays_[one.ray];
+            const LoneRays::Axes named = run_.axes[one.ray];
+            const std::size_t axes[3] = {named.x / kRow, named.y / kRow, named.z / kRow};
+            const std::uint32_t block = one.place / TriangleBlock::kLanes;
+            const std::uint32_t lane = one.place % TriangleBlock::kLanes;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    corners[3 * k + axis][i] = mesh_.leaves[block].corners[k][axes[axis]][lane];
+                    if (has_residuals)
+                        lacking[3 * k + axis][i] = mesh_.residuals[block].corners[k][axes[axis]][lane];
+                }
+                origins[axis][i] = ray.origin[axes[axis]];
+                directions[axis][i] = ray.direction[axes[axis]];
+            }
+            powers[i] = run_.power[one.ray];
+            units[i] = run_.units[one.ray];
+            from[i] = ray.t_min;
+            to[i] = ray.t_max;
+        }
+        const V scale = hn::Set(d, static_cast<double>(mesh_.scale)), power = hn::Load(d, powers);
+        V origin[3], direction[3];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin[axis] = hn::Mul(hn::Load(d, origins[axis]), scale);
+            direction[axis] = hn::Mul(hn::Load(d, directions[axis]), power);
+        }
+        const TriangleLanes exact(origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR {
+            const V corner = hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis]));
+            return has_residuals ? hn::Add(corner, hn::PromoteTo(d, hn::Load(f, lacking[3 * k + axis])))
+                                 : corner;
+        });
+        const V t = exact.t(), unit = hn::Load(d, units);
+        const V begin = hn::Mul(hn::Load(d, from), unit), end = hn::Mul(hn::Load(d, to), unit);
+        const auto within =
+            hn::And(hn::And(hn::Lt(t, end), hn::Gt(t, begin)), hn::Gt(exact.lower_bound_of_t(), begin));
+        const auto plain = exact.is_plain();
+        const unsigned hit = bits_of(d, hn::And(plain, within));
+        const unsigned known = bits_of(d, hn::Or(plain, exact.beside()));
+        alignas(64) double out[4][kTogether];
+        hn::Store(t, d, out[0]);
+        for (std::size_t k = 0; k < 3; ++k)
+            hn::Store(exact.weight(k), d, out[1 + k]);
+        for (unsigned i = 0; i < count; ++i) {
+            const Asked& one = asked[i];
+            MeshHit& best = best_[one.ray];
+            if ((known >> i & 1) == 0) {
+                improve(one, best);
+                continue;
+            }
+            if ((hit >> i & 1) == 0) continue;
+            const std::uint32_t number = primitive(one.place);
+            if (out[0][i] < best.t || (out[0][i] == best.t && number < best.primitive))
+                best = {out[0][i], number, {out[1][i], out[2][i], out[3][i]}};
+        }
+    }
+
+    HWY_NOINLINE void improve(const Asked& one, MeshHit& best)
+    {
+        const Ray& r = rays_[one.ray];
+        const double units = run_.units[one.ray];
+        const WatertightRay<double> exact(r.origin * static_cast<double>(mesh_.scale),
+                                          r.direction * run_.power[one.ray]);
+        improve_hit(exact,
+                    r.t_min * units,
+                    r.t_max * units,
+                    mesh_,
+                    mesh_.leaves[one.place / TriangleBlock::kLanes],
+                    one.place % TriangleBlock::kLanes,
+                    best);
     }
 
     const MeshView& mesh_;

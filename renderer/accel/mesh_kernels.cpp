@@ -59,6 +59,13 @@ std::uint64_t found(const MeshHit* hits, unsigned count)
 }
 
 template <bool kAnyHit>
+std::uint64_t trace_lone(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+{
+    trace_apart<kAnyHit>(mesh, rays, count, hits);
+    return found(hits, count);
+}
+
+template <bool kAnyHit>
 void trace_many(const MeshView& mesh, const Ray* rays, std::size_t count, MeshHit* hits)
 {
     for (std::size_t i = 0; i < count; i += LoneRays::kRays)
@@ -81,20 +88,15 @@ bool may_run_alike(const Ray* rays, unsigned count)
            octant(rays[count / 3]) == first && octant(rays[1]) == first;
 }
 
+// Rays that may run alike.
 template <bool kAnyHit>
-std::uint64_t trace_run(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+std::uint64_t trace_alike(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
-    if (mesh.nodes == nullptr) return 0;
-    if (!may_run_alike(rays, count)) {
-        trace_apart<kAnyHit>(mesh, rays, count, hits);
-        return found(hits, count);
-    }
     RayRun run;
     const Following how = prepare_run(run, mesh, rays, count);
     if (how == Following::none) return 0;
     if (how == Following::apart) {
-        trace_apart<kAnyHit>(mesh, rays, count, hits);
-        return found(hits, count);
+        return trace_lone<kAnyHit>(mesh, rays, count, hits);
     }
     for (unsigned i = 0; i < count; ++i)
         hits[i] = {std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
@@ -117,15 +119,18 @@ bool trace_fan(
         mesh.fans->of(kAnyHit).tell(!fan_walk.gave_up());
     if (!fan_walk.gave_up()) return true;
     if (!kAnyHit) { // rays that stand far apart among small triangles
-        trace_apart<kAnyHit>(mesh, rays, count, hits);
-        found_in_fan = found(hits, count);
+        found_in_fan = trace_lone<kAnyHit>(mesh, rays, count, hits);
         return true;
     }
     Ray left[RayRun::kRays];
     unsigned from[RayRun::kRays];
     unsigned waiting = 0;
     const auto trace_left = [&]() HWY_ATTR {
-        for (std::uint64_t met = trace_run<kAnyHit>(mesh, left, waiting, hits); met != 0; met &= met - 1)
+        for (std::uint64_t met = may_run_alike(left, waiting)
+                                     ? trace_alike<kAnyHit>(mesh, left, waiting, hits)
+                                     : trace_lone<kAnyHit>(mesh, left, waiting, hits);
+             met != 0;
+             met &= met - 1)
             found_in_fan |= std::uint64_t{1} << from[__builtin_ctzll(met)];
         waiting = 0;
     };
@@ -139,25 +144,45 @@ bool trace_fan(
     return true;
 }
 
+// Run by run; runs that do not run alike wait for their neighbours, so that more are in flight at once.
+template <bool kAnyHit>
+std::uint64_t trace_runs(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
+{
+    std::uint64_t met = 0;
+    unsigned apart = 0; // rays before `first` that wait
+    const auto trace_waiting = [&](unsigned first) HWY_ATTR {
+        if (apart == 0) return;
+        const unsigned from = first - apart;
+        met |= trace_lone<kAnyHit>(mesh, rays + from, apart, hits + from) << from;
+        apart = 0;
+    };
+    for (unsigned first = 0; first < count; first += RayRun::kRays) {
+        const unsigned some = std::min(RayRun::kRays, count - first);
+        std::uint64_t in_run = 0;
+        const bool as_fan =
+            some != count && trace_fan<kAnyHit>(mesh, rays + first, some, hits + first, in_run);
+        if (!as_fan && !may_run_alike(rays + first, some)) {
+            apart += some;
+            continue;
+        }
+        trace_waiting(first);
+        if (!as_fan) in_run = trace_alike<kAnyHit>(mesh, rays + first, some, hits + first);
+        met |= in_run << first;
+    }
+    trace_waiting(count);
+    return met;
+}
+
 // All as one fan, or run by run, or apart where that has been quicker.
 template <bool kAnyHit>
 std::uint64_t trace(const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits)
 {
     if (mesh.nodes == nullptr) return 0;
-    if (mesh.fans != nullptr && !mesh.fans->of(kAnyHit).worth_trying(rays[0])) {
-        trace_apart<kAnyHit>(mesh, rays, count, hits);
-        return found(hits, count);
-    }
+    if (mesh.fans != nullptr && !mesh.fans->of(kAnyHit).worth_trying(rays[0]))
+        return trace_lone<kAnyHit>(mesh, rays, count, hits);
     std::uint64_t met = 0;
     if (trace_fan<kAnyHit>(mesh, rays, count, hits, met)) return met;
-    for (unsigned first = 0; first < count; first += RayRun::kRays) {
-        const unsigned some = std::min(RayRun::kRays, count - first);
-        std::uint64_t in_run = 0;
-        if (some == count || !trace_fan<kAnyHit>(mesh, rays + first, some, hits + first, in_run))
-            in_run = trace_run<kAnyHit>(mesh, rays + first, some, hits + first);
-        met |= in_run << first;
-    }
-    return met;
+    return trace_runs<kAnyHit>(mesh, rays, count, hits);
 }
 
 bool closest_hit(const MeshView& mesh, const Ray& ray, MeshHit& hit)

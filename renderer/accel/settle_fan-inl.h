@@ -10,6 +10,7 @@
 #include "renderer/accel/exact_ray.h"
 #include "renderer/accel/exact_test.h"
 #include "renderer/accel/prepare_fan-inl.h"
+#include "renderer/accel/triangle_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace renderer::HWY_NAMESPACE {
@@ -95,10 +96,10 @@ public:
     }
 
 private:
-    using D = hn::CappedTag<double, 8>;
-    using V = hn::Vec<D>;
+    using D = TriangleLanes::D;
+    using V = TriangleLanes::V;
     using F = hn::Rebind<float, D>;
-    static constexpr unsigned kTogether = hn::MaxLanes(D());
+    static constexpr unsigned kTogether = TriangleLanes::kLanes;
     static constexpr unsigned kMostAsked = 128;
 
     HWY_INLINE bool decide(unsigned ray, std::uint32_t triangle, MeshHit& best) const
@@ -140,9 +141,8 @@ private:
         return drawn;
     }
 
-    // As intersect_watertight does, operation for operation, for rays that prefer a triangle; what is special is
-    // left to that.
-    HWY_INLINE void settle_some(const unsigned* rays, unsigned count) // NOLINT(readability-function-size)
+    // Rays that prefer a triangle.
+    HWY_INLINE void settle_some(const unsigned* rays, unsigned count)
     {
         const D d;
         const F f;
@@ -170,48 +170,22 @@ private:
         // mesh.scale is 1, and powers of two have exact inverses.
         const V power = hn::BitCast(d, hn::Sub(hn::Set(du, std::uint64_t{0x7fe} << 52), exponent));
         const V inverse = hn::BitCast(d, exponent);
-        const V main = hn::Mul(hn::Load(d, directions[2]), power);
-        const V sx = hn::Div(hn::Mul(hn::Load(d, directions[0]), power), main);
-        const V sy = hn::Div(hn::Mul(hn::Load(d, directions[1]), power), main);
-        const V sz = hn::Div(hn::Set(d, 1.0), main);
-        V x[3], y[3], z[3];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto at = [&](std::size_t axis) HWY_ATTR {
-                return hn::Sub(hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis])),
-                               hn::Load(d, origins[axis]));
-            };
-            const V depth = at(2);
-            x[k] = hn::Sub(at(0), hn::Mul(sx, depth));
-            y[k] = hn::Sub(at(1), hn::Mul(sy, depth));
-            z[k] = hn::Mul(sz, depth);
-        }
-        const auto edge = [&](std::size_t a, std::size_t b)
-                              HWY_ATTR { return hn::Sub(hn::Mul(x[b], y[a]), hn::Mul(y[b], x[a])); };
-        const V e[3] = {edge(1, 2), edge(2, 0), edge(0, 1)};
-        const V det = hn::Add(hn::Add(e[0], e[1]), e[2]);
-        const V inverse_det = hn::Div(hn::Set(d, 1.0), det);
-        const V w[3] = {hn::Mul(e[0], inverse_det), hn::Mul(e[1], inverse_det), hn::Mul(e[2], inverse_det)};
-        const auto mean = [&](V a, V b, V c) HWY_ATTR {
-            return hn::Add(hn::Add(hn::Mul(w[0], a), hn::Mul(w[1], b)), hn::Mul(w[2], c));
-        };
-        const V t = mean(z[0], z[1], z[2]);
-        const V off = hn::Max(hn::Abs(mean(x[0], x[1], x[2])), hn::Abs(mean(y[0], y[1], y[2])));
-        const auto max3 = [](V a, V b, V c)
-                              HWY_ATTR { return hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c)); };
-        const V widest = hn::Max(max3(x[0], x[1], x[2]), max3(y[0], y[1], y[2]));
+        const V origin[3] = {hn::Load(d, origins[0]), hn::Load(d, origins[1]), hn::Load(d, origins[2])};
+        const V direction[3] = {hn::Mul(hn::Load(d, directions[0]), power),
+                                hn::Mul(hn::Load(d, directions[1]), power),
+                                hn::Mul(hn::Load(d, directions[2]), power)};
+        const TriangleLanes exact(origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR {
+            return hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis]));
+        });
         // Where the weights need not be drawn onto the ray, the axes are the fan's, and the rest is as float said.
-        auto plain = hn::Le(off, hn::Mul(hn::Set(d, gamma<double>(16)), widest));
-        plain = hn::And(plain,
-                        hn::And(hn::Le(hn::Abs(sx), hn::Set(d, 1.0)), hn::Le(hn::Abs(sy), hn::Set(d, 1.0))));
-        // An edge at 0 is looked at once more by its exact products.
-        plain = hn::And(plain, hn::Gt(hn::Min(w[0], hn::Min(w[1], w[2])), hn::Zero(d)));
-        plain = hn::And(plain,
-                        hn::And(hn::Lt(hn::Mul(hn::Load(d, from), inverse), t),
-                                hn::Lt(t, hn::Mul(hn::Load(d, to), inverse))));
+        const V t = exact.t();
+        const auto within = hn::And(hn::Lt(hn::Mul(hn::Load(d, from), inverse), t),
+                                    hn::Lt(t, hn::Mul(hn::Load(d, to), inverse)));
+        const auto plain = hn::And(hn::And(exact.is_plain(), exact.runs_along_third()), within);
         alignas(64) double out[4][kTogether];
         hn::Store(hn::Mul(t, power), d, out[0]);
         for (std::size_t k = 0; k < 3; ++k)
-            hn::Store(w[k], d, out[1 + k]);
+            hn::Store(exact.weight(k), d, out[1 + k]);
         const unsigned as_said = bits_of(d, plain);
         for (unsigned i = 0; i < count; ++i) {
             const unsigned ray = rays[i];

@@ -19,8 +19,8 @@ struct TextureUse {
     double scale_u = 1, scale_v = 1;
     TextureWrap wrap = TextureWrap::repeat;
     TextureFilter filter = TextureFilter::linear;
-    std::optional<TextureEncoding> encoding; // nothing: srgb for colours of 8 or 16 bits, else linear
-    std::uint8_t channel = 0;                // of a number: 0 red or grey, 1 green, 2 blue, 3 alpha
+    std::optional<TextureEncoding> encoding{}; // nothing: srgb for colours of 8 or 16 bits, else linear
+    std::uint8_t channel = 0;                  // of a number: 0 red or grey, 1 green, 2 blue, 3 alpha
     friend bool operator==(const TextureUse&, const TextureUse&) = default;
 };
 

@@ -18,6 +18,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace renderer {
@@ -49,9 +51,11 @@ struct WatertightRay {
     {
         const Vec3<T> size = abs(direction);
         kz = size.x > size.y ? (size.x > size.z ? 0u : 2u) : (size.y > size.z ? 1u : 2u);
-        kx = kz == 2 ? 0 : kz + 1;
-        ky = kx == 2 ? 0 : kx + 1;
-        if (direction[kz] < 0) std::swap(kx, ky); // keeps the winding
+        // The others in turn; swapped where it runs backwards, which keeps the winding.
+        constexpr std::uint8_t kOthers[3][3] = {{1, 2, 1}, {2, 0, 2}, {0, 1, 0}};
+        const std::size_t backwards = direction[kz] < 0 ? 1 : 0;
+        kx = kOthers[kz][backwards];
+        ky = kOthers[kz][backwards + 1];
         sx = direction[kx] / direction[kz];
         sy = direction[ky] / direction[kz];
         sz = 1 / direction[kz];

@@ -56,6 +56,7 @@ public:
         for (std::size_t i = 0; i < samples.size(); ++i) {
             paths_[i] = Path{
                 .ray = samples[i].ray, .of = &samples[i], .sample = i, .media = scene_.media_at_camera()};
+            alive_[i] = &paths_[i];
             radiance_[i] = {};
         }
         count_ = samples.size();
@@ -88,15 +89,15 @@ private:
     std::uint64_t step(RayKind kind)
     {
         for (std::size_t i = 0; i < count_; ++i)
-            rays_[i] = paths_[i].ray;
+            rays_[i] = alive_[i]->ray;
         (kind == RayKind::camera ? tally_.camera_rays : tally_.bounce_rays) += count_;
         const std::uint64_t met = scene_.closest_hits(rays_.first(count_), hits_.first(count_), kind);
         turns_ = 0;
         for (std::size_t i = 0; i < count_; ++i)
             if ((met >> i & 1) != 0)
-                arrive(paths_[i], hits_[i]);
+                arrive(*alive_[i], hits_[i]);
             else
-                add_background(paths_[i]);
+                add_background(*alive_[i]);
         light();
         go_on();
         return met;
@@ -174,9 +175,7 @@ private:
         std::size_t kept = 0;
         for (std::size_t i = 0; i < turns_; ++i) {
             Turn& turn = turn_[i];
-            if (!(turn.passes ? pass(turn) : scatter(turn))) continue;
-            if (turn.path != &paths_[kept]) paths_[kept] = *turn.path; // turns are in the paths' order
-            ++kept;
+            if (turn.passes ? pass(turn) : scatter(turn)) alive_[kept++] = turn.path;
         }
         count_ = kept;
     }
@@ -239,6 +238,7 @@ private:
     const std::stop_token& stop_;
     std::size_t count_ = 0, turns_ = 0;
     Uninitialized<Path, kMostSamples> paths_;
+    Path* alive_[kMostSamples]; // those that go on, the first count_
     Uninitialized<Ray, kMostSamples> rays_;
     Uninitialized<SceneHit, kMostSamples> hits_;
     Uninitialized<Turn, kMostSamples> turn_;

@@ -95,10 +95,20 @@ EmitterSample sample_triangle(const Emitter& e, Vec3d point, Sample2 u)
     return at_by_area(point, e.corner + e.side_u * b0 + e.side_v * b1, e.normal, 1 / e.area);
 }
 
+SphericalRectangle rectangle_seen(const Emitter& e, Vec3d point)
+{
+    const Vec3d across = cross(e.normal, e.side_w);
+    const double height = dot(e.side_v, across);
+    return {e.corner - point,
+            {.x = e.side_w, .y = height < 0 ? -across : across, .z = e.normal}, // mirrored, or not
+            dot(e.side_u, e.side_w),
+            std::abs(height)};
+}
+
 EmitterSample sample_parallelogram(const Emitter& e, Vec3d point, Sample2 u)
 {
     if (e.is_rectangle) {
-        const SphericalRectangle seen(e.corner - point, e.side_u, e.side_v);
+        const SphericalRectangle seen = rectangle_seen(e, point);
         if (seen.solid_angle() > kLeastSolidAngle)
             return at(point, point + seen.sample(u), 1 / seen.solid_angle());
     }
@@ -230,6 +240,7 @@ std::optional<Emitter> rectangle_emitter(const Affine3& world_from_unit, Rgb rad
                      radiance,
                      two_sided);
     e.is_rectangle = std::abs(dot(u, v)) <= kRightAngle * length(u) * length(v);
+    if (e.is_rectangle) e.side_w = normalize(u);
     if (dot(e.normal, column(world_from_unit, 2)) < 0)
         e.normal = -e.normal; // mirrored: +z shines all the same
     return with_area(e);
@@ -300,7 +311,7 @@ double pdf(const Emitter& e, Vec3d point, Vec3d hit)
     case EmitterShape::parallelogram: {
         if (!sees_it_shine(e, point)) return 0;
         if (e.is_rectangle) {
-            const SphericalRectangle seen(e.corner - point, e.side_u, e.side_v);
+            const SphericalRectangle seen = rectangle_seen(e, point);
             if (seen.solid_angle() > kLeastSolidAngle) return 1 / seen.solid_angle();
         }
         return over_solid_angle(1 / e.area, point, hit, e.normal);

@@ -31,7 +31,7 @@ struct Emitter {
     bool two_sided = false;
     Vec3d corner{};            // of a triangle or parallelogram; the centre of the others
     Vec3d side_u{}, side_v{};  // from the corner, or half axes of disk and ellipsoid
-    Vec3d side_w{};            // third half axis of an ellipsoid
+    Vec3d side_w{};            // third half axis of an ellipsoid; of a rectangle side_u as a unit vector
     double radius = 0;         // of a sphere
     Vec3d normal{};            // unit, of the shining side of what is flat
     double area = 0;           // m^2, of one side

@@ -19,7 +19,8 @@ double sum_of_arc_cosines(double a, double b)
 {
     const double sa = sine_of(a), sb = sine_of(b);
     const double angle = atan2(sa * b + a * sb, a * b - sa * sb);
-    return angle < 0 ? angle + 2 * kPi : angle;
+    constexpr double kTurn[2] = {0, 2 * kPi};
+    return angle + kTurn[angle < 0];
 }
 
 // Angle between two directions that need not be unit: keeps its digits for small and for flat angles.
@@ -73,12 +74,9 @@ Vec3d SphericalTriangle::sample(Sample2 u) const
     return normalize(b_ * cos_theta + perpendicular_part(on_arc, b_) * sin_theta);
 }
 
-SphericalRectangle::SphericalRectangle(Vec3d corner, Vec3d side_u, Vec3d side_v)
+SphericalRectangle::SphericalRectangle(Vec3d corner, const Axes& axes, double width, double height)
+    : x_(axes.x), y_(axes.y), z_(axes.z)
 {
-    const double width = length(side_u), height = length(side_v);
-    x_ = side_u / width;
-    y_ = side_v / height;
-    z_ = cross(x_, y_);
     z0_ = dot(corner, z_);
     if (z0_ > 0) {
         z_ = -z_;
@@ -106,7 +104,7 @@ Vec3d SphericalRectangle::sample(Sample2 u) const
     const auto [sin_au, cos_au] = sin_cos(au);
     const double fu = (cos_au * b0_ - b1_) / sin_au;
     double cu = 1 / std::sqrt(fu * fu + b0_ * b0_);
-    if (fu < 0) cu = -cu;
+    cu = fu < 0 ? -cu : cu;
     cu = std::isfinite(cu) ? std::clamp(cu, -1.0, 1.0) : -1.0;
     const double xu = std::clamp(-(cu * z0_) / std::sqrt(std::max(1e-300, 1 - cu * cu)), x0_, x1_);
     const double d2 = xu * xu + z0_ * z0_;

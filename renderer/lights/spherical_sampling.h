@@ -27,7 +27,11 @@ private:
 class SphericalRectangle {
 public:
     // One corner and two sides at right angles.
-    SphericalRectangle(Vec3d corner, Vec3d side_u, Vec3d side_v);
+    // `axes`: unit, along the sides and at right angles to both; `corner`: the one that both sides leave from.
+    struct Axes {
+        Vec3d x, y, z;
+    };
+    SphericalRectangle(Vec3d corner, const Axes& axes, double width, double height);
     double solid_angle() const { return solid_angle_; }
     Vec3d sample(Sample2 u) const; // a point of the rectangle; solid_angle() > 0
 

@@ -1,11 +1,21 @@
 #include "renderer/math/transcendental.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace renderer {
 
 namespace {
+
+// By whether something is so: angles are as good as random, and a branch that cannot be foreseen costs more than these
+// functions' arithmetic.
+constexpr double kSign[2] = {1, -1};
+
+// Adding it rounds to a whole number, and leaves that in the low bits: 1.5 * 2^52.
+constexpr double kShift = 6755399441055744.0;
 
 // Taylor polynomials: on |x| <= pi/4 the first term left out is below 1e-20, so rounding is the only error.
 double sin_kernel(double x)
@@ -45,17 +55,10 @@ double cos_kernel(double x)
 std::pair<double, double> turned(double x, double low, int quarters)
 {
     const double s0 = sin_kernel(x), c0 = cos_kernel(x);
-    const double s = s0 + low * c0, c = c0 - low * s0;
-    switch (quarters & 3) {
-    case 0:
-        return {s, c};
-    case 1:
-        return {c, -s};
-    case 2:
-        return {-s, -c};
-    default:
-        return {-c, s};
-    }
+    const double either[2] = {s0 + low * c0, c0 - low * s0};
+    const auto quarter = static_cast<unsigned>(quarters) & 3;
+    return {kSign[quarter >> 1] * either[quarter & 1],
+            kSign[(quarter ^ (quarter >> 1)) & 1] * either[1 - (quarter & 1)]};
 }
 
 } // namespace
@@ -83,14 +86,19 @@ std::pair<double, double> sin_cos(double radians)
     // pi/2 in three parts of at most 33 bits: their products with a quarter count below 2^20 are exact.
     // Source: Cody, Waite, "Software Manual for the Elementary Functions", 1980, ch. 8.
     constexpr double kFirst = 0x1.921fb544p+0, kSecond = 0x1.0b4611a6p-34, kThird = 0x1.3198a2e037073p-69;
-    const double quarters = std::rint(radians * (2 / kPi));
+    const double shifted = radians * (2 / kPi) + kShift, quarters = shifted - kShift;
     const double first = radians - quarters * kFirst;
     const double second = quarters * kSecond;
     const double y = first - second;
     const double lost = (first - y) - second;
     const double tail = lost - quarters * kThird;
     const double x = y + tail;
-    return turned(x, (y - x) + tail, static_cast<int>(static_cast<long long>(quarters) & 3));
+    return turned(x, (y - x) + tail, static_cast<int>(std::bit_cast<std::uint64_t>(shifted) & 3));
+}
+
+std::pair<double, double> sin_cos_near_zero(double radians)
+{
+    return {sin_kernel(radians), cos_kernel(radians)};
 }
 
 double tan_deg(double degrees)
@@ -187,7 +195,7 @@ double atan_unit(double x)
                                           0.6435011087932843868028092,
                                           0.7188299996216245054170142,
                                           0.7853981633974483096156608};
-    const double nearest = std::rint(x * 8);
+    const double nearest = (x * 8 + kShift) - kShift;
     const double c = nearest / 8;
     const double t = (x - c) / (1 + x * c), z = t * t; // |t| <= 1/16: t^17 / 17 is below 1e-21
     double p = -1.0 / 15;
@@ -207,9 +215,11 @@ double atan2(double y, double x)
     const double ax = std::abs(x), ay = std::abs(y);
     if (!std::isfinite(ax + ay)) return std::numeric_limits<double>::quiet_NaN();
     if (ax + ay == 0) return 0;
-    double angle = ay <= ax ? atan_unit(ay / ax) : kPi / 2 - atan_unit(ax / ay);
-    if (x < 0) angle = kPi - angle;
-    return y < 0 ? -angle : angle;
+    constexpr double kRightAngle[2] = {0, kPi / 2}, kHalfTurn[2] = {0, kPi};
+    const bool steep = ay > ax, behind = x < 0, below = y < 0;
+    const double within = atan_unit(std::min(ax, ay) / std::max(ax, ay));
+    const double ahead = kRightAngle[steep] + kSign[steep] * within;
+    return kSign[below] * (kHalfTurn[behind] + kSign[behind] * ahead);
 }
 
 double acos(double cosine)

@@ -18,6 +18,8 @@ inline constexpr double kPi = 3.14159265358979323846;
 std::pair<double, double> sin_cos_deg(double degrees);
 // {sin, cos} of an angle in radians, |radians| up to 1e5.
 std::pair<double, double> sin_cos(double radians);
+// The same for |radians| <= pi/4, without a reduction.
+std::pair<double, double> sin_cos_near_zero(double radians);
 // tan of an angle in degrees, within (-90, 90).
 double tan_deg(double degrees);
 // 2^x for |x| up to 1000; exact where x is an integer.

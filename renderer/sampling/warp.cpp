@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace renderer {
 
@@ -11,12 +12,15 @@ DiskPoint concentric_disk(Sample2 u)
 {
     const double a = 2 * static_cast<double>(u.u0) - 1, b = 2 * static_cast<double>(u.u1) - 1;
     if (a == 0 && b == 0) return {0, 0};
-    if (std::abs(a) > std::abs(b)) {
-        const auto [s, c] = sin_cos(kPi / 4 * (b / a));
-        return {a * c, a * s};
-    }
-    const auto [s, c] = sin_cos(kPi / 2 - kPi / 4 * (a / b));
-    return {b * c, b * s};
+    // Which of the two is the larger is as good as random: no branch on it.
+    const double place[2] = {a, b};
+    const std::size_t larger = std::abs(a) > std::abs(b) ? 0 : 1;
+    const double radius = place[larger];
+    const auto [s, c] = sin_cos_near_zero(kPi / 4 * (place[1 - larger] / radius));
+    double point[2];
+    point[larger] = radius * c;
+    point[1 - larger] = radius * s;
+    return {point[0], point[1]};
 }
 
 Vec3f sample_cosine_hemisphere(Sample2 u)
