@@ -23,8 +23,11 @@ std::uint32_t blocks_for(std::uint32_t triangles)
 
 } // namespace
 
-std::optional<BaselineMesh> BaselineMesh::build(
-    const Mesh& mesh, TriangleRun run, std::optional<BvhSplit> split, ThreadPool& pool, std::stop_token stop)
+std::optional<BaselineMesh> BaselineMesh::build(const Mesh& mesh,
+                                                TriangleRun run,
+                                                std::optional<BvhSplit> split,
+                                                ThreadPool& pool,
+                                                const std::stop_token& stop)
 {
     const DefaultFloatingPoint subnormal_corners_count;
     TriangleItems triangles = triangle_items(mesh, run, pool, stop);

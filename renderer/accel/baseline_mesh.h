@@ -23,7 +23,7 @@ public:
                                              TriangleRun run,
                                              std::optional<BvhSplit> split,
                                              ThreadPool& pool,
-                                             std::stop_token stop = {});
+                                             const std::stop_token& stop = {});
 
     std::optional<MeshHit> closest_hit(const Ray& ray) const;
     bool any_hit(const Ray& ray) const;

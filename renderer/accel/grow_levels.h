@@ -21,7 +21,8 @@ CutRule cut_rule(std::size_t items, unsigned depth, const BvhOptions& options);
 // Of a leaf, in tests of a block.
 inline double leaf_tests(std::size_t items, const BvhOptions& options)
 {
-    return static_cast<double>((items + options.block - 1) / options.block);
+    const std::size_t blocks = (items + options.block - 1) / options.block;
+    return static_cast<double>(blocks);
 }
 
 // A run of items that is to become a subtree.

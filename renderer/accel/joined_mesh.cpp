@@ -70,7 +70,7 @@ std::optional<JoinedMesh> JoinedMesh::join(std::span<const Instance> instances,
                 {member.instance, i, normalize(back.transposed_vector(normalize(cross(b - a, c - a))))});
         }
     }
-    if (more_than_floats) joined.residuals = std::move(residuals);
+    if (more_than_floats) joined.residuals = residuals;
     std::shared_ptr<const PreparedMesh> prepared = prepare_mesh(std::move(joined), tree, pool, stop);
     if (!prepared) return std::nullopt;
     return JoinedMesh(std::move(prepared), std::move(triangles), members);

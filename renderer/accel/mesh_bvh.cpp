@@ -12,8 +12,8 @@
 
 namespace renderer {
 
-std::optional<MeshBvh>
-MeshBvh::build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& pool, std::stop_token stop)
+std::optional<MeshBvh> MeshBvh::build(
+    const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& pool, const std::stop_token& stop)
 {
     const DefaultFloatingPoint subnormal_corners_count;
     MeshBvh built;

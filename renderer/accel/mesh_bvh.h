@@ -34,8 +34,11 @@ class MeshBvh {
 public:
     // The mesh has passed validate_mesh, the run lies within it; the mesh is only read. Nothing if `stop` was
     // requested.
-    static std::optional<MeshBvh>
-    build(const Mesh& mesh, TriangleRun run, BvhSplit split, ThreadPool& pool, std::stop_token stop = {});
+    static std::optional<MeshBvh> build(const Mesh& mesh,
+                                        TriangleRun run,
+                                        BvhSplit split,
+                                        ThreadPool& pool,
+                                        const std::stop_token& stop = {});
 
     std::optional<MeshHit> closest_hit(const Ray& ray, const MeshKernels& kernels = mesh_kernels()) const;
     bool any_hit(const Ray& ray, const MeshKernels& kernels = mesh_kernels()) const;

@@ -62,7 +62,7 @@ std::shared_ptr<const PreparedMesh> prepare_run(std::shared_ptr<const Mesh> mesh
 } // namespace
 
 std::shared_ptr<const PreparedMesh>
-prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, std::stop_token stop)
+prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, const std::stop_token& stop)
 {
     const TriangleRun all{0, static_cast<std::uint32_t>(mesh.triangles.size())};
     return prepare_run(std::make_shared<const Mesh>(std::move(mesh)), all, true, tree, pool, stop);
@@ -72,7 +72,7 @@ std::shared_ptr<const PreparedMesh> prepare_part(const std::shared_ptr<const Pre
                                                  const MeshPart& part,
                                                  MeshTree tree,
                                                  ThreadPool& pool,
-                                                 std::stop_token stop)
+                                                 const std::stop_token& stop)
 {
     return prepare_run(whole->mesh(), {part.first_triangle, part.triangle_count}, false, tree, pool, stop);
 }

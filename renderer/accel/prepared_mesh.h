@@ -23,7 +23,7 @@ class PreparedMesh;
 
 // Builds the BVH; deterministic: the same mesh gives the same tree on any number of threads.
 std::shared_ptr<const PreparedMesh>
-prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, std::stop_token stop = {});
+prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, const std::stop_token& stop = {});
 
 // Only the triangles of `part`, a run of the whole mesh's; the arrays stay shared with `whole`, and
 // primitives keep the numbers that they have there.
@@ -31,7 +31,7 @@ std::shared_ptr<const PreparedMesh> prepare_part(const std::shared_ptr<const Pre
                                                  const MeshPart& part,
                                                  MeshTree tree,
                                                  ThreadPool& pool,
-                                                 std::stop_token stop = {});
+                                                 const std::stop_token& stop = {});
 
 const Mesh& mesh_of(const PreparedMesh& prepared); // of a part: the whole mesh
 // One of the two, by the tree that was asked for; the other is nullptr.

@@ -22,19 +22,9 @@ using Check = std::optional<ImportFault>;
 constexpr std::size_t kChunkHead = 6; // identifier, size with the head
 
 // Identifiers of chunks, as assimp and others list them.
-enum Chunk : std::uint16_t {
-    kMain = 0x4d4d,
-    kEditor = 0x3d3d,
-    kObject = 0x4000,
-    kTriMesh = 0x4100,
-    kVertices = 0x4110,
-    kFaces = 0x4120,
-    kUvs = 0x4140,
-    kKeyframer = 0xb000,
-    kTrackObject = 0xb002,
-    kTrackHead = 0xb010,
-    kTrackId = 0xb030
-};
+constexpr std::uint16_t kMain = 0x4d4d, kEditor = 0x3d3d, kObject = 0x4000, kTriMesh = 0x4100,
+                        kVertices = 0x4110, kFaces = 0x4120, kUvs = 0x4140, kKeyframer = 0xb000,
+                        kTrackObject = 0xb002, kTrackHead = 0xb010, kTrackId = 0xb030;
 
 class ThreeDsCheck {
 public:

@@ -32,19 +32,9 @@ constexpr std::size_t kMostScans = 64;
 // Flat blocks of 64 pixels of three components take a few bits each.
 constexpr std::uint64_t kMostPixelsPerByte = 1024;
 
-enum Marker : std::uint32_t {
-    kFirstFrame = 0xc0,
-    kProgressive = 0xc2,
-    kHuffman = 0xc4,
-    kReserved = 0xc8,
-    kArithmetic = 0xcc,
-    kLastFrame = 0xcf,
-    kFirstRestart = 0xd0,
-    kLastRestart = 0xd7,
-    kEnd = 0xd9,
-    kScan = 0xda,
-    kAlone = 0x01
-};
+constexpr std::uint32_t kFirstFrame = 0xc0, kProgressive = 0xc2, kHuffman = 0xc4, kReserved = 0xc8,
+                        kArithmetic = 0xcc, kLastFrame = 0xcf, kFirstRestart = 0xd0, kLastRestart = 0xd7,
+                        kEnd = 0xd9, kScan = 0xda, kAlone = 0x01;
 
 class Walk {
 public:

@@ -1,6 +1,7 @@
 #include "renderer/lights/light_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -56,6 +57,69 @@ double cost(const LightBounds& b)
     return b.power * (surface(b.box) + 1e-300) * (2 - std::max(-1.0, b.cos_spread));
 }
 
+// Lights whose centres lie in one slice of a node.
+struct Bin {
+    LightBounds bounds;
+    std::size_t count = 0;
+
+    void add(const LightBounds& more, std::size_t lights)
+    {
+        if (lights == 0) return;
+        if (count == 0)
+            bounds = more;
+        else
+            join(bounds, more);
+        count += lights;
+    }
+};
+
+Bin sum_of(std::span<const Bin> bins)
+{
+    Bin sum;
+    for (const Bin& bin : bins)
+        sum.add(bin.bounds, bin.count);
+    return sum;
+}
+
+// How many bins go to the first child; 0: there is no cut that parts them.
+std::size_t cheapest_cut(std::span<const Bin> bins)
+{
+    std::size_t best = 0;
+    double best_cost = std::numeric_limits<double>::infinity();
+    for (std::size_t at = 1; at < bins.size(); ++at) {
+        const Bin low = sum_of(bins.first(at)), high = sum_of(bins.subspan(at));
+        if (low.count == 0 || high.count == 0) continue;
+        const double sum = cost(low.bounds) + cost(high.bounds);
+        if (sum < best_cost) {
+            best_cost = sum;
+            best = at;
+        }
+    }
+    return best;
+}
+
+// Puts those of the first child first, and tells how many they are: by twelve bins on the longest axis of the centres;
+// where they are all in one place, halves.
+std::size_t cut(std::span<std::uint32_t> lights, std::span<const LightBounds> all, const Bounds3d& centers)
+{
+    constexpr std::size_t kBins = 12;
+    const Vec3d extent = centers.extent();
+    const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    if (!(extent[axis] > 0)) return lights.size() / 2;
+    const auto bin_of = [&](std::uint32_t light) {
+        const double place = (all[light].box.center()[axis] - centers.lower[axis]) / extent[axis];
+        return std::min(kBins - 1, static_cast<std::size_t>(place * static_cast<double>(kBins)));
+    };
+    std::array<Bin, kBins> bins;
+    for (const std::uint32_t light : lights)
+        bins[bin_of(light)].add(all[light], 1);
+    const std::size_t best = cheapest_cut(bins);
+    if (best == 0) return lights.size() / 2;
+    const auto border = std::stable_partition(
+        lights.begin(), lights.end(), [&](std::uint32_t light) { return bin_of(light) < best; });
+    return static_cast<std::size_t>(border - lights.begin());
+}
+
 } // namespace
 
 double importance(const LightBounds& light, Vec3d point)
@@ -108,58 +172,7 @@ LightTree::build(std::span<std::uint32_t> lights, std::span<const LightBounds> a
         leaf_of_[lights[0]] = number;
         return number;
     }
-    // Twelve bins on the longest axis of the centres; where they are all in one place, halves.
-    const Vec3d extent = centers.extent();
-    const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    std::size_t middle = lights.size() / 2;
-    if (extent[axis] > 0) {
-        constexpr std::size_t kBins = 12;
-        const auto bin_of = [&](std::uint32_t light) {
-            const double place = (all[light].box.center()[axis] - centers.lower[axis]) / extent[axis];
-            return std::min(kBins - 1, static_cast<std::size_t>(place * static_cast<double>(kBins)));
-        };
-        struct Bin {
-            LightBounds bounds;
-            std::size_t count = 0;
-        };
-        Bin bins[kBins];
-        for (const std::uint32_t light : lights) {
-            Bin& bin = bins[bin_of(light)];
-            if (bin.count++ == 0)
-                bin.bounds = all[light];
-            else
-                join(bin.bounds, all[light]);
-        }
-        const auto gather = [&](std::size_t first, std::size_t end) {
-            Bin sum;
-            for (std::size_t i = first; i < end; ++i) {
-                if (bins[i].count == 0) continue;
-                if (sum.count == 0)
-                    sum = bins[i];
-                else {
-                    join(sum.bounds, bins[i].bounds);
-                    sum.count += bins[i].count;
-                }
-            }
-            return sum;
-        };
-        std::size_t best = 0;
-        double best_cost = std::numeric_limits<double>::infinity();
-        for (std::size_t cut = 1; cut < kBins; ++cut) {
-            const Bin low = gather(0, cut), high = gather(cut, kBins);
-            if (low.count == 0 || high.count == 0) continue;
-            const double sum = cost(low.bounds) + cost(high.bounds);
-            if (sum < best_cost) {
-                best_cost = sum;
-                best = cut;
-            }
-        }
-        if (best != 0) {
-            const auto border = std::stable_partition(
-                lights.begin(), lights.end(), [&](std::uint32_t light) { return bin_of(light) < best; });
-            middle = static_cast<std::size_t>(border - lights.begin());
-        }
-    }
+    const std::size_t middle = cut(lights, all, centers);
     build(lights.first(middle), all, number);
     const std::uint32_t second = build(lights.subspan(middle), all, number);
     nodes_[number].second_child = second;

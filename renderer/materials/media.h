@@ -10,7 +10,6 @@
 #include "renderer/materials/bsdf.h"
 
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,7 +18,11 @@ namespace renderer {
 // Parts of one object that have materials of their own are bodies apart.
 struct BodyId {
     std::uint32_t instance = 0xffffffff, material = 0xffffffff;
-    friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
+    friend constexpr bool operator==(BodyId, BodyId) = default;
+    friend constexpr bool operator<(BodyId a, BodyId b)
+    {
+        return a.instance != b.instance ? a.instance < b.instance : a.material < b.material;
+    }
 };
 
 class Media {

@@ -48,7 +48,7 @@ ScatteredLight::ScatteredLight(const Air& air,
                                const ColumnTable& columns,
                                const GridResolution& resolution,
                                ThreadPool& pool,
-                               std::stop_token stop)
+                               const std::stop_token& stop)
     : air_(air), columns_(columns), grid_(air, resolution),
       has_mie_(
           std::any_of(air.mie_scattering.begin(), air.mie_scattering.end(), [](double b) { return b > 0; })),

@@ -36,7 +36,7 @@ public:
                    const ColumnTable& columns,
                    const GridResolution& resolution,
                    ThreadPool& pool,
-                   std::stop_token stop = {});
+                   const std::stop_token& stop = {});
 
     // A line of sight, for radiance(): of use for every sun and azimuth. It ends `far_m` from the eye, if not sooner.
     [[nodiscard]] LightPath path(const PlanetRay& ray,

@@ -216,12 +216,14 @@ GuardedServer::Load GuardedServer::load() const
 void GuardedServer::go_on(Connection connection)
 {
     guarded([&] {
-        if (connection->phase() == ConnectionStream::Phase::answer)
+        if (connection->phase() == ConnectionStream::Phase::answer) {
             workers_->enqueue(connection, WorkerPool::What::goes_on);
-        else if (connection->intake().stage() == RequestIntake::Stage::faulty)
-            refuse(std::move(connection), HeadFault(connection->intake().fault()));
-        else
+        } else if (connection->intake().stage() == RequestIntake::Stage::faulty) {
+            const HeadFault fault(connection->intake().fault());
+            refuse(std::move(connection), fault);
+        } else {
             hand_to_thread(std::move(connection));
+        }
     });
 }
 
