@@ -408,14 +408,15 @@ private:
         if (count != 0) settle_some(asked, count);
     }
 
-    HWY_INLINE void settle_some(const Asked* asked, unsigned count)
-    {
-        const D d;
-        const hn::Rebind<float, D> f;
-        const bool has_residuals = mesh_.residuals != nullptr;
+    // Rays and their triangles side by side, axes renamed; the last lanes may repeat the first.
+    struct Batch {
         alignas(64) float corners[9][kTogether], lacking[9][kTogether];
         alignas(64) double origins[3][kTogether], directions[3][kTogether];
         alignas(64) double powers[kTogether], units[kTogether], from[kTogether], to[kTogether];
+    };
+    HWY_INLINE void load(const Asked* asked, unsigned count, Batch& batch) const
+    {
+        const bool has_residuals = mesh_.residuals != nullptr;
         for (unsigned i = 0; i < kTogether; ++i) {
             const Asked& one = asked[i < count ? i : 0];
             const Ray& ray = rays_[one.ray];
@@ -425,31 +426,40 @@ private:
             const std::uint32_t lane = one.place % TriangleBlock::kLanes;
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 for (std::size_t k = 0; k < 3; ++k) {
-                    corners[3 * k + axis][i] = mesh_.leaves[block].corners[k][axes[axis]][lane];
+                    batch.corners[3 * k + axis][i] = mesh_.leaves[block].corners[k][axes[axis]][lane];
                     if (has_residuals)
-                        lacking[3 * k + axis][i] = mesh_.residuals[block].corners[k][axes[axis]][lane];
+                        batch.lacking[3 * k + axis][i] = mesh_.residuals[block].corners[k][axes[axis]][lane];
                 }
-                origins[axis][i] = ray.origin[axes[axis]];
-                directions[axis][i] = ray.direction[axes[axis]];
+                batch.origins[axis][i] = ray.origin[axes[axis]];
+                batch.directions[axis][i] = ray.direction[axes[axis]];
             }
-            powers[i] = run_.power[one.ray];
-            units[i] = run_.units[one.ray];
-            from[i] = ray.t_min;
-            to[i] = ray.t_max;
+            batch.powers[i] = run_.power[one.ray];
+            batch.units[i] = run_.units[one.ray];
+            batch.from[i] = ray.t_min;
+            batch.to[i] = ray.t_max;
         }
-        const V scale = hn::Set(d, static_cast<double>(mesh_.scale)), power = hn::Load(d, powers);
+    }
+
+    HWY_INLINE void settle_some(const Asked* asked, unsigned count)
+    {
+        const D d;
+        const hn::Rebind<float, D> f;
+        const bool has_residuals = mesh_.residuals != nullptr;
+        Batch batch;
+        load(asked, count, batch);
+        const V scale = hn::Set(d, static_cast<double>(mesh_.scale)), power = hn::Load(d, batch.powers);
         V origin[3], direction[3];
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            origin[axis] = hn::Mul(hn::Load(d, origins[axis]), scale);
-            direction[axis] = hn::Mul(hn::Load(d, directions[axis]), power);
+            origin[axis] = hn::Mul(hn::Load(d, batch.origins[axis]), scale);
+            direction[axis] = hn::Mul(hn::Load(d, batch.directions[axis]), power);
         }
         const TriangleLanes exact(origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR {
-            const V corner = hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis]));
-            return has_residuals ? hn::Add(corner, hn::PromoteTo(d, hn::Load(f, lacking[3 * k + axis])))
+            const V corner = hn::PromoteTo(d, hn::Load(f, batch.corners[3 * k + axis]));
+            return has_residuals ? hn::Add(corner, hn::PromoteTo(d, hn::Load(f, batch.lacking[3 * k + axis])))
                                  : corner;
         });
-        const V t = exact.t(), unit = hn::Load(d, units);
-        const V begin = hn::Mul(hn::Load(d, from), unit), end = hn::Mul(hn::Load(d, to), unit);
+        const V t = exact.t(), unit = hn::Load(d, batch.units);
+        const V begin = hn::Mul(hn::Load(d, batch.from), unit), end = hn::Mul(hn::Load(d, batch.to), unit);
         const auto within =
             hn::And(hn::And(hn::Lt(t, end), hn::Gt(t, begin)), hn::Gt(exact.lower_bound_of_t(), begin));
         const auto plain = exact.is_plain();
