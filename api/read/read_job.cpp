@@ -17,7 +17,9 @@ namespace {
 
 bool may_stand_in_label(char c)
 {
-    return c != ':' && c != 127 && (c < 0 || c >= ' '); // bytes of UTF-8 are below 0
+    const auto byte =
+        static_cast<unsigned char>(c); // `char` has a sign on some processors and none on others
+    return c != ':' && byte != 127 && byte >= ' ';
 }
 
 } // namespace

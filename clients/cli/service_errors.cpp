@@ -7,8 +7,11 @@ namespace {
 
 std::string printable(std::string text)
 {
-    for (char& c : text)
-        if ((c >= 0 && c < ' ' && c != '\n') || c == 127) c = '?';
+    for (char& c : text) {
+        const auto byte =
+            static_cast<unsigned char>(c); // `char` has a sign on some processors and none on others
+        if ((byte < ' ' && c != '\n') || byte == 127) c = '?';
+    }
     return text;
 }
 

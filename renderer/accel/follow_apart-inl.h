@@ -10,9 +10,9 @@
 #define HELIOGRAPH_FOLLOW_APART_INL
 #endif
 
-#include "renderer/accel/exact_test.h"
+#include "renderer/accel/look_at_leaf-inl.h"
 #include "renderer/accel/prepare_apart-inl.h"
-#include "renderer/accel/triangle_lanes-inl.h"
+#include "renderer/accel/settle_apart-inl.h"
 
 #include <algorithm>
 #include <bit>
@@ -144,99 +144,6 @@ HWY_INLINE void visit_node(const WideNode& node, const LoneRays& run, unsigned r
     }
 }
 
-// What the quick look at the triangles of a leaf tells: which lanes the double test might accept up to `end`, and
-// which it accepts for certain; where their t lies.
-struct Look {
-    static constexpr unsigned kLanes = 2 * TriangleBlock::kLanes;
-    alignas(32) float least[kLanes], most[kLanes];
-    unsigned may, sure;
-};
-
-// Corners of a leaf's blocks, both at once where vectors are wide enough.
-#if HWY_MAX_BYTES >= 32
-using LeafLanes = hn::CappedTag<float, Look::kLanes>;
-#else
-using LeafLanes = Four;
-#endif
-HWY_INLINE hn::Vec<LeafLanes>
-corners_of(const TriangleBlock* const (&blocks)[2], std::size_t k, std::size_t axis_bytes, std::size_t lane)
-{
-    const LeafLanes d;
-    const auto at = [&](std::size_t i) HWY_ATTR {
-        const auto* const bytes = reinterpret_cast<const char*>(blocks[i]->corners[k]) + axis_bytes;
-        return reinterpret_cast<const float*>(bytes);
-    };
-#if HWY_MAX_BYTES >= 32
-    static_cast<void>(lane);
-    const hn::Half<LeafLanes> half;
-    return hn::Combine(d, hn::Load(half, at(1)), hn::Load(half, at(0)));
-#else
-    return hn::Load(d, at(lane / TriangleBlock::kLanes) + lane % TriangleBlock::kLanes);
-#endif
-}
-
-// The double test's places across the ray are within `lateral` of these, so an edge value is within `slack` of its
-// counterpart: only when two edges disagree beyond that is the triangle certainly missed, and only when all
-// agree beyond it is it certainly met. Along the ray a hit lies between the corners' depths, and where edge
-// values tell the corners' weights, near their weighted mean. A NaN neither rejects nor assures.
-HWY_INLINE void
-look_at_leaf(const LoneRays& run, unsigned ray, const TriangleBlock* const (&blocks)[2], Look& look)
-{
-    const LeafLanes d;
-    const LoneRays::Axes axes = run.axes[ray];
-    const auto set = [&](const LoneRays::Lanes<float>& lanes) HWY_ATTR { return hn::Set(d, lanes[ray]); };
-    const auto from_x = set(run.from_x), from_y = set(run.from_y), from_z = set(run.from_z);
-    const auto shear_x = set(run.shear_x), shear_y = set(run.shear_y), depth_scale = set(run.depth_scale);
-    const auto near_side = set(run.near_lateral), end = set(run.end);
-    unsigned may_hit = 0, sure_hit = 0;
-    for (std::size_t lane = 0; lane < Look::kLanes; lane += hn::MaxLanes(d)) {
-        hn::Vec<LeafLanes> x[3], y[3], t[3];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto depth = hn::Sub(corners_of(blocks, k, axes.z, lane), from_z);
-            x[k] = hn::NegMulAdd(shear_x, depth, hn::Sub(corners_of(blocks, k, axes.x, lane), from_x));
-            y[k] = hn::NegMulAdd(shear_y, depth, hn::Sub(corners_of(blocks, k, axes.y, lane), from_y));
-            t[k] = hn::Mul(depth, depth_scale);
-        }
-        const auto edge = [&](std::size_t p, std::size_t q)
-                              HWY_ATTR { return hn::MulSub(x[q], y[p], hn::Mul(y[q], x[p])); };
-        const auto e0 = edge(1, 2), e1 = edge(2, 0), e2 = edge(0, 1);
-        const auto reach = [&](std::size_t k) HWY_ATTR { return hn::Add(hn::Abs(x[k]), hn::Abs(y[k])); };
-        const auto widest = hn::Max(reach(0), hn::Max(reach(1), reach(2)));
-        const auto first = hn::Min(t[0], hn::Min(t[1], t[2])), last = hn::Max(t[0], hn::Max(t[1], t[2]));
-        const auto distance = hn::Max(hn::Abs(first), hn::Abs(last));
-        // What rounding comes to at the sizes that occur here.
-        const auto side = hn::MulAdd(hn::Set(d, 0x1p-21f), hn::Max(widest, distance), near_side);
-        const auto slack = hn::Mul(hn::Mul(side, hn::Set(d, 4.0f)), hn::Add(widest, side));
-        const auto low = hn::Min(e0, hn::Min(e1, e2)), high = hn::Max(e0, hn::Max(e1, e2));
-        const auto minus = hn::Neg(slack);
-        const auto beside = hn::And(hn::Lt(low, minus), hn::Lt(slack, high));
-        const auto outside = hn::Or(beside, hn::Or(hn::Lt(end, first), hn::Lt(last, set(run.begin))));
-        const unsigned may = ~bits_of(d, outside) & ((1u << hn::MaxLanes(d)) - 1);
-        const auto margin = hn::Mul(side, hn::Set(d, 6.0f));
-        const auto within = hn::Or(hn::Lt(slack, low), hn::Lt(high, minus));
-        const auto sure = hn::And(within, hn::And(hn::Lt(margin, first), hn::Lt(last, set(run.limit))));
-        // The weights are within 9 slack / (|sum| - 3 slack) of the double test's, together.
-        const auto sum = hn::Add(e0, hn::Add(e1, e2));
-        const auto weight = hn::Div(hn::Set(d, 1.0f), sum);
-        const auto mean =
-            hn::MulAdd(hn::Mul(e0, weight),
-                       t[0],
-                       hn::MulAdd(hn::Mul(e1, weight), t[1], hn::Mul(hn::Mul(e2, weight), t[2])));
-        const auto off =
-            hn::Div(hn::Mul(hn::Mul(slack, hn::Set(d, 9.0f)), hn::Sub(last, first)),
-                    hn::Max(hn::Sub(hn::Abs(sum), hn::Mul(slack, hn::Set(d, 3.0f))), hn::Zero(d)));
-        const auto about = hn::Add(off, margin);
-        const auto behind = hn::And(within, hn::Lt(hn::Add(mean, about), hn::Zero(d)));
-        const unsigned ahead = may & ~bits_of(d, behind);
-        may_hit |= ahead << lane;
-        sure_hit |= bits_of(d, sure) << lane;
-        hn::Store(hn::IfThenElse(within, hn::Max(first, hn::Sub(mean, about)), first), d, look.least + lane);
-        hn::Store(hn::Min(hn::Add(last, margin), hn::Add(mean, about)), d, look.most + lane);
-    }
-    look.may = may_hit;
-    look.sure = sure_hit;
-}
-
 template <bool kAnyHit>
 class LoneWalk {
 public:
@@ -267,16 +174,6 @@ private:
         float least;
     };
     static constexpr unsigned kCandidates = 8, kInFlight = 16;
-
-    // A ray that the double test is asked about, and with which triangle.
-    struct Asked {
-        unsigned ray;
-        std::uint32_t place;
-    };
-    using D = TriangleLanes::D;
-    using V = TriangleLanes::V;
-    static constexpr unsigned kTogether = TriangleLanes::kLanes;
-    static constexpr std::size_t kRow = sizeof(TriangleBlock::corners[0][0]); // LoneRays::Axes count bytes
 
     // In two rounds: nothing in the first depends on a branch, and what the second branches on is known by then.
     HWY_INLINE void visit_nodes()
@@ -358,7 +255,7 @@ private:
             const auto lane = static_cast<unsigned>(__builtin_ctz(may));
             if (look.least[lane] > run_.end[ray]) continue;
             const std::uint32_t place = number * TriangleBlock::kLanes + lane;
-            if (primitive(place) == TriangleBlock::kNone) continue;
+            if (primitive_at(mesh_, place) == TriangleBlock::kNone) continue;
             if (found_[ray] == kCandidates) decide(ray);
             candidates_[ray][found_[ray]++] = {place, look.least[lane]};
         }
@@ -374,17 +271,12 @@ private:
         best_[ray].primitive = 0;
     }
 
-    std::uint32_t primitive(std::uint32_t place) const
-    {
-        return mesh_.leaves[place / TriangleBlock::kLanes].primitive[place % TriangleBlock::kLanes];
-    }
-
     // Tests the candidates that are left.
     HWY_NOINLINE void decide(unsigned ray)
     {
+        const LoneTests tests(mesh_, run_, rays_, best_);
         for (unsigned i = 0; i < found_[ray]; ++i)
-            if (!(candidates_[ray][i].least > run_.end[ray]))
-                improve({ray, candidates_[ray][i].place}, best_[ray]);
+            if (!(candidates_[ray][i].least > run_.end[ray])) tests.test(ray, candidates_[ray][i].place);
         found_[ray] = 0;
         if (best_[ray].primitive != TriangleBlock::kNone)
             run_.end[ray] = std::min(run_.end[ray], run_.end_for(best_[ray].t, ray));
@@ -393,109 +285,13 @@ private:
     // The candidates that are left, of all rays.
     HWY_INLINE void settle()
     {
-        Asked asked[kTogether];
-        unsigned count = 0;
+        LoneTests tests(mesh_, run_, rays_, best_);
         for (std::uint64_t left = run_.rays; left != 0; left &= left - 1) {
             const auto ray = static_cast<unsigned>(std::countr_zero(left));
-            for (unsigned i = 0; i < found_[ray]; ++i) {
-                if (candidates_[ray][i].least > run_.end[ray]) continue;
-                asked[count++] = {ray, candidates_[ray][i].place};
-                if (count < kTogether) continue;
-                settle_some(asked, count);
-                count = 0;
-            }
+            for (unsigned i = 0; i < found_[ray]; ++i)
+                if (!(candidates_[ray][i].least > run_.end[ray])) tests.ask(ray, candidates_[ray][i].place);
         }
-        if (count != 0) settle_some(asked, count);
-    }
-
-    // Rays and their triangles side by side, axes renamed; the last lanes may repeat the first.
-    struct Batch {
-        alignas(64) float corners[9][kTogether], lacking[9][kTogether];
-        alignas(64) double origins[3][kTogether], directions[3][kTogether];
-        alignas(64) double powers[kTogether], units[kTogether], from[kTogether], to[kTogether];
-    };
-    HWY_INLINE void load(const Asked* asked, unsigned count, Batch& batch) const
-    {
-        const bool has_residuals = mesh_.residuals != nullptr;
-        for (unsigned i = 0; i < kTogether; ++i) {
-            const Asked& one = asked[i < count ? i : 0];
-            const Ray& ray = rays_[one.ray];
-            const LoneRays::Axes named = run_.axes[one.ray];
-            const std::size_t axes[3] = {named.x / kRow, named.y / kRow, named.z / kRow};
-            const std::uint32_t block = one.place / TriangleBlock::kLanes;
-            const std::uint32_t lane = one.place % TriangleBlock::kLanes;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                for (std::size_t k = 0; k < 3; ++k) {
-                    batch.corners[3 * k + axis][i] = mesh_.leaves[block].corners[k][axes[axis]][lane];
-                    if (has_residuals)
-                        batch.lacking[3 * k + axis][i] = mesh_.residuals[block].corners[k][axes[axis]][lane];
-                }
-                batch.origins[axis][i] = ray.origin[axes[axis]];
-                batch.directions[axis][i] = ray.direction[axes[axis]];
-            }
-            batch.powers[i] = run_.power[one.ray];
-            batch.units[i] = run_.units[one.ray];
-            batch.from[i] = ray.t_min;
-            batch.to[i] = ray.t_max;
-        }
-    }
-
-    HWY_INLINE void settle_some(const Asked* asked, unsigned count)
-    {
-        const D d;
-        const hn::Rebind<float, D> f;
-        const bool has_residuals = mesh_.residuals != nullptr;
-        Batch batch;
-        load(asked, count, batch);
-        const V scale = hn::Set(d, static_cast<double>(mesh_.scale)), power = hn::Load(d, batch.powers);
-        V origin[3], direction[3];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            origin[axis] = hn::Mul(hn::Load(d, batch.origins[axis]), scale);
-            direction[axis] = hn::Mul(hn::Load(d, batch.directions[axis]), power);
-        }
-        const TriangleLanes exact(origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR {
-            const V corner = hn::PromoteTo(d, hn::Load(f, batch.corners[3 * k + axis]));
-            return has_residuals ? hn::Add(corner, hn::PromoteTo(d, hn::Load(f, batch.lacking[3 * k + axis])))
-                                 : corner;
-        });
-        const V t = exact.t(), unit = hn::Load(d, batch.units);
-        const V begin = hn::Mul(hn::Load(d, batch.from), unit), end = hn::Mul(hn::Load(d, batch.to), unit);
-        const auto within =
-            hn::And(hn::And(hn::Lt(t, end), hn::Gt(t, begin)), hn::Gt(exact.lower_bound_of_t(), begin));
-        const auto plain = exact.is_plain();
-        const unsigned hit = bits_of(d, hn::And(plain, within));
-        const unsigned known = bits_of(d, hn::Or(plain, exact.beside()));
-        alignas(64) double out[4][kTogether];
-        hn::Store(t, d, out[0]);
-        for (std::size_t k = 0; k < 3; ++k)
-            hn::Store(exact.weight(k), d, out[1 + k]);
-        for (unsigned i = 0; i < count; ++i) {
-            const Asked& one = asked[i];
-            MeshHit& best = best_[one.ray];
-            if ((known >> i & 1) == 0) {
-                improve(one, best);
-                continue;
-            }
-            if ((hit >> i & 1) == 0) continue;
-            const std::uint32_t number = primitive(one.place);
-            if (out[0][i] < best.t || (out[0][i] == best.t && number < best.primitive))
-                best = {out[0][i], number, {out[1][i], out[2][i], out[3][i]}};
-        }
-    }
-
-    HWY_NOINLINE void improve(const Asked& one, MeshHit& best)
-    {
-        const Ray& r = rays_[one.ray];
-        const double units = run_.units[one.ray];
-        const WatertightRay<double> exact(r.origin * static_cast<double>(mesh_.scale),
-                                          r.direction * run_.power[one.ray]);
-        improve_hit(exact,
-                    r.t_min * units,
-                    r.t_max * units,
-                    mesh_,
-                    mesh_.leaves[one.place / TriangleBlock::kLanes],
-                    one.place % TriangleBlock::kLanes,
-                    best);
+        tests.finish();
     }
 
     const MeshView& mesh_;

@@ -40,7 +40,7 @@ void DirectLighting::arrive(std::span<Rgb> added)
     tally_.shadow_rays += count_;
     const std::uint64_t shadowed = scene_.any_hits(rays_.first(count_));
     for (std::size_t i = 0; i < count_; ++i)
-        added[point_[i]] += (shadowed >> i & 1) == 0 ? light_[i] : Rgb{};
+        if ((shadowed >> i & 1) == 0) added[point_[i]] += light_[i];
     count_ = 0;
 }
 

@@ -104,7 +104,7 @@ Vec3d SphericalRectangle::sample(Sample2 u) const
     const auto [sin_au, cos_au] = sin_cos(au);
     const double fu = (cos_au * b0_ - b1_) / sin_au;
     double cu = 1 / std::sqrt(fu * fu + b0_ * b0_);
-    cu = fu < 0 ? -cu : cu;
+    if (fu < 0) cu = -cu;
     cu = std::isfinite(cu) ? std::clamp(cu, -1.0, 1.0) : -1.0;
     const double xu = std::clamp(-(cu * z0_) / std::sqrt(std::max(1e-300, 1 - cu * cu)), x0_, x1_);
     const double d2 = xu * xu + z0_ * z0_;

@@ -7,6 +7,7 @@
 #include "renderer/plan/world_bounds.h"
 #include "renderer/sky/air.h"
 #include "renderer/sky/color_error.h"
+#include "renderer/sky/sky_light.h"
 #include "renderer/sky/standing.h"
 
 #include <algorithm>
@@ -129,7 +130,7 @@ std::optional<SkyPlan> choose_sky(const SceneDescription& scene,
     if (a == nullptr || !is_lit(integrator)) return std::nullopt;
     constexpr double kExactTableError = 0.001;
     SkyPlan plan;
-    if (a->mode == SkyMode::exact) plan.table_error = kExactTableError;
+    plan.table_error = a->mode == SkyMode::exact ? kExactTableError : SkyLight::kTableError;
     plan.mode = a->mode == SkyMode::automatic ? SkyMode::fast : a->mode;
     models.used.push_back(
         {"atmosphere",

@@ -86,8 +86,8 @@ constexpr bool is_lit(Integrator integrator)
 // Of an atmosphere: which tables, and how exact.
 struct SkyPlan {
     SkyMode mode = SkyMode::fast; // never automatic
-    double far_m = 0; // how far things are seen through the air; 0: the air before them does not count
-    double table_error = 0.005; // that the table of the sky is to come to: rms over mean
+    double far_m = 0;       // how far things are seen through the air; 0: the air before them does not count
+    double table_error = 0; // that the table of the sky is to come to: rms over mean
 };
 
 // Small objects, and lights with a shape, whose triangles are traced as one mesh: see joined_objects.h.

@@ -164,6 +164,27 @@ TEST(Emitter, DrawsUniformlyWhatIsSeen)
     }
 }
 
+TEST(Emitter, MirroredRectangleIsDrawnFromAsItsTwin)
+{
+    const Affine3 placed = Affine3::translate({0.3, -0.2, 2}) * Affine3::rotate_deg(25, {1, 2, 3});
+    const Emitter plain = rectangle_emitter(placed * Affine3::scale({2, 0.5, 1}), kWhite, true).value();
+    const PixelSampler numbers(4, 1, 0);
+    for (const Vec3d factors :
+         {Vec3d{-2, 0.5, 1}, Vec3d{2, -0.5, 1}, Vec3d{2, 0.5, -1}, Vec3d{-2, -0.5, -1}}) {
+        const Emitter mirrored = rectangle_emitter(placed * Affine3::scale(factors), kWhite, true).value();
+        const Affine3 back = placed.inverse().value();
+        for (std::uint32_t i = 0; i < 64; ++i) {
+            const EmitterSample s = sample(mirrored, {}, numbers.sample_2d(i, 0));
+            ASSERT_GT(s.distance, 0);
+            const Vec3d at = back.point(s.wi * s.distance);
+            EXPECT_LE(std::abs(at.x), 1 + 1e-12);
+            EXPECT_LE(std::abs(at.y), 0.25 + 1e-12);
+            EXPECT_NEAR(at.z, 0, 1e-12);
+            EXPECT_NEAR(s.pdf / pdf(plain, {}, s.wi * s.distance), 1, 1e-9);
+        }
+    }
+}
+
 TEST(Emitter, GivesNothingBehindAndInItsPlane)
 {
     const Emitter e = ceiling(1, 1, {0, 1, 0});

@@ -142,3 +142,13 @@ TEST(Acos, IsTrueToTheLastDigitsAlsoNearOneAndMinusOne)
     EXPECT_EQ(renderer::acos(2), 0);
     EXPECT_EQ(renderer::acos(-2), renderer::kPi);
 }
+
+TEST(SinCos, NearZeroNeedsNoReduction)
+{
+    for (int i = -1000; i <= 1000; ++i) {
+        const double x = renderer::kPi / 4 * i / 1000;
+        const auto [s, c] = renderer::sin_cos_near_zero(x);
+        EXPECT_DOUBLE_EQ(s, renderer::sin_cos(x).first) << x;
+        EXPECT_DOUBLE_EQ(c, renderer::sin_cos(x).second) << x;
+    }
+}
