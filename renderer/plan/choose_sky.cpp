@@ -114,8 +114,9 @@ std::string colors_in_words(const AtmosphereDescription& a, double altitude, dou
     if (!error)
         return how + "; how far off their colours are cannot be told: the coefficients are listed one by "
                      "one, or no air is lit";
-    return how + "; against 36 of them the sky's colours are " + number_in_words(100 * error->sky) +
-           " % off and the sun's " + number_in_words(100 * error->sun) + " % (rms, light scattered once)" +
+    return how + "; against " + std::to_string(kDenseWavelengths) + " of them the sky's colours are " +
+           number_in_words(100 * error->sky) + " % off and the sun's " + number_in_words(100 * error->sun) +
+           " % (rms, light scattered once)" +
            (std::max(error->sky, error->sun) > kMuchOff && n < kDozen ? "; more of them come nearer" : "");
 }
 

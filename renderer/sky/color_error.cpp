@@ -13,7 +13,7 @@ namespace renderer {
 
 namespace {
 
-constexpr std::size_t kWavelengths = 36, kDirections = 24;
+constexpr std::size_t kDirections = 24;
 
 bool follows_laws(const AtmosphereDescription& a)
 {
@@ -25,7 +25,7 @@ bool follows_laws(const AtmosphereDescription& a)
 std::vector<double> dense_wavelengths()
 {
     std::vector<double> nm;
-    for (std::size_t i = 0; i < kWavelengths; ++i)
+    for (std::size_t i = 0; i < kDenseWavelengths; ++i)
         nm.push_back(385 + 10 * static_cast<double>(i));
     return nm;
 }
