@@ -150,10 +150,8 @@ void add_render(CommandLine& words)
         "side of a tile in pixels (default: as the scene says, else 16); the picture does not depend on it");
     const std::map<std::string, renderer::BvhSplit> splits{{"sah", renderer::BvhSplit::sah},
                                                            {"midpoint", renderer::BvhSplit::midpoint}};
-    command
-        ->add_option(
-            "--split", options.split, "how trees over triangles are split: sah or midpoint; for measuring")
-        ->transform(CLI::CheckedTransformer(splits));
+    command->add_option("--split", options.split, "how trees over triangles are split; for measuring")
+        ->transform(CLI::CheckedTransformer(splits).description("sah|midpoint"));
     add_quiet(*command, options.quiet);
 }
 
