@@ -23,6 +23,8 @@ struct FanBlock {
     alignas(32) float least_volume[kLanes],
         most_volume[kLanes];                             // certain bounds, positive where `faces` has a bit
     alignas(32) float nearest[kLanes], farthest[kLanes]; // depths of the corners
+    // The slopes of rays that may meet it are between these; infinite where a corner is not clearly beyond the apex.
+    alignas(32) float least_x[kLanes], most_x[kLanes], least_y[kLanes], most_y[kLanes];
     unsigned faces =
         0; // bit i: which side of triangle i the apex sees is certain; it counts as the inner one
 };
@@ -32,7 +34,7 @@ struct FanBlock {
 // `reach` farther: at most 2^-47 (A + reach)^2 in an edge function. Rounding a vector n to float, the slopes
 // (3 roundings, at most kSteepest), and the two products and sums make less than 16 * 2^-24 |n|_1 together, also
 // where it is the corner of a group's bounds that is asked. Lines that pass `aside` from the apex shift edge
-// functions by less than 4 * aside * |edge|_1.
+// functions by less than 4 * aside * |edge|_1. Slopes of corners have five roundings in float, those of rays three.
 HWY_INLINE void
 see_block(const RayFan& fan, const TriangleBlock& block, FanBlock& out) // NOLINT(readability-function-size)
 {
@@ -104,8 +106,32 @@ see_block(const RayFan& fan, const TriangleBlock& block, FanBlock& out) // NOLIN
               out.edge_error);
         for (std::size_t axis = 0; axis < 3; ++axis)
             store(hn::Xor(whole[axis], flip), out.whole[axis]);
-        store(hn::Min(corner[0][2], hn::Min(corner[1][2], corner[2][2])), out.nearest);
+        const auto nearest = hn::Min(corner[0][2], hn::Min(corner[1][2], corner[2][2]));
+        store(nearest, out.nearest);
         store(hn::Max(corner[0][2], hn::Max(corner[1][2], corner[2][2])), out.farthest);
+
+        const auto clear = hn::Lt(hn::MulAdd(farthest, hn::Set(d, 0x1p-20), aside), nearest);
+        const auto infinity = hn::Set(f, std::numeric_limits<float>::infinity());
+        // Of what is not clearly beyond the apex: a blur without end.
+        const auto blur =
+            hn::IfThenElse(hn::Gt(hn::DemoteTo(f, hn::IfThenElseZero(clear, nearest)), hn::Zero(f)),
+                           hn::Div(hn::DemoteTo(f, aside), hn::DemoteTo(f, nearest)),
+                           infinity);
+        hn::Vec<decltype(f)> depth[3];
+        for (std::size_t k = 0; k < 3; ++k)
+            depth[k] = hn::DemoteTo(f, corner[k][2]);
+        const auto bound_slopes = [&](std::size_t axis, float* least, float* most) HWY_ATTR {
+            const auto slope = [&](std::size_t k)
+                                   HWY_ATTR { return hn::Div(hn::DemoteTo(f, corner[k][axis]), depth[k]); };
+            const auto a = slope(0), b = slope(1), c = slope(2);
+            const auto lower = hn::Min(a, hn::Min(b, c)), upper = hn::Max(a, hn::Max(b, c));
+            const auto slack =
+                hn::MulAdd(hn::Max(hn::Abs(lower), hn::Abs(upper)), hn::Set(f, 0x1p-20f), blur);
+            hn::Store(hn::Sub(lower, slack), f, least + lane);
+            hn::Store(hn::Add(upper, slack), f, most + lane);
+        };
+        bound_slopes(0, out.least_x, out.most_x);
+        bound_slopes(1, out.least_y, out.most_y);
     }
 }
 

@@ -17,7 +17,7 @@ namespace {
 // plane `side` where its foremost corner is: rows of WideNode::planes say which corner that is.
 class FanSides {
 public:
-    HWY_INLINE explicit FanSides(const RayFan& fan)
+    HWY_INLINE explicit FanSides(const RayFan& fan) : fan_(fan)
     {
         const float infinity = std::numeric_limits<float>::infinity();
         float least_x = infinity, least_y = infinity, most_x = -infinity, most_y = -infinity;
@@ -36,6 +36,9 @@ public:
         const double slack = size * 0x1p-20 + 4.0 * static_cast<double>(fan.aside);
         depth_shift_ = static_cast<float>(-fan.sign() * fan.apex.z - slack);
         begin_ -= static_cast<float>(2 * slack);
+        apex_x_ = static_cast<float>(fan.apex.x);
+        apex_y_ = static_cast<float>(fan.apex.y);
+        slack_ = static_cast<float>(slack);
         const auto set = [&](unsigned side, std::size_t row, float slope, double at, double by) {
             // The depth at which the box reaches farthest to this side's inner half.
             const bool far = side % 2 == 0 ? slope > 0 : slope < 0;
@@ -76,14 +79,46 @@ public:
         }
     }
 
+    // Whether a group of rays may enter the child: closer bounds than those of all together.
+    HWY_INLINE bool some_group_enters(const WideNode& node, unsigned child) const
+    {
+        const Group f;
+        const float near = std::max(node.planes[near_row_][child] * sign_ + depth_shift_, 0.0f);
+        const float far = node.planes[near_row_ ^ 1][child] * sign_ + depth_shift_ + 2 * slack_;
+        const auto reach_between =
+            [&](const float* least, const float* most, float lower, float upper) HWY_ATTR {
+                const auto a = hn::Set(f, near), b = hn::Set(f, far);
+                const auto l = hn::Load(f, least), m = hn::Load(f, most);
+                return hn::And(hn::Le(hn::Set(f, lower), hn::Max(hn::Mul(m, a), hn::Mul(m, b))),
+                               hn::Le(hn::Min(hn::Mul(l, a), hn::Mul(l, b)), hn::Set(f, upper)));
+            };
+        unsigned groups = 0;
+        for (unsigned g = 0; g < RayFan::kGroups; g += kGroupLanes) {
+            const auto in_x = reach_between(fan_.least_x + g,
+                                            fan_.most_x + g,
+                                            node.planes[2 * fan_.x][child] - apex_x_ - slack_,
+                                            node.planes[2 * fan_.x + 1][child] - apex_x_ + slack_);
+            const auto in_y = reach_between(fan_.least_y + g,
+                                            fan_.most_y + g,
+                                            node.planes[2 * fan_.y][child] - apex_y_ - slack_,
+                                            node.planes[2 * fan_.y + 1][child] - apex_y_ + slack_);
+            const auto in_depth = hn::And(hn::Le(hn::Set(f, near), hn::Load(f, fan_.group_end + g)),
+                                          hn::Le(hn::Load(f, fan_.group_begin + g), hn::Set(f, far)));
+            groups |= bits_of(f, hn::And(in_depth, hn::And(in_x, in_y)));
+        }
+        return groups != 0;
+    }
+
 private:
     struct Side {
         std::size_t row, depth_row;
         float slope, at;
     };
+    const RayFan& fan_;
     Side sides_[4]; // even: nothing beyond it; odd: nothing before it
     std::size_t near_row_;
     float sign_, depth_shift_, begin_;
+    float apex_x_, apex_y_, slack_;
 };
 
 template <bool kAnyHit>
@@ -124,6 +159,9 @@ public:
                 for (unsigned hits = entered.children; hits != 0; hits &= hits - 1) {
                     const auto i = static_cast<unsigned>(__builtin_ctz(hits));
                     const Waiting child{node.child[i], entered.entries[i]};
+                    // Shadow rays start at all depths: what all together meet is often met by none.
+                    if (kAnyHit && (child.code & ChildCode::kLeaf) != 0 && !sides.some_group_enters(node, i))
+                        continue;
                     unsigned at = waiting++;
                     for (; at > base && stack[at - 1].entry < child.entry; --at)
                         stack[at] = stack[at - 1];
@@ -192,6 +230,12 @@ private:
         for (unsigned i = 0; i < RayFan::kGroups; i += kGroupLanes) {
             auto out = hn::Or(hn::Lt(hn::Load(f, fan_.group_end + i), beyond),
                               hn::Lt(behind, hn::Load(f, fan_.group_begin + i)));
+            const auto apart = [&](const float* least, const float* most, float from, float to) HWY_ATTR {
+                return hn::Or(hn::Lt(hn::Load(f, most + i), hn::Set(f, from)),
+                              hn::Lt(hn::Set(f, to), hn::Load(f, least + i)));
+            };
+            out = hn::Or(out, apart(fan_.least_x, fan_.most_x, seen.least_x[lane], seen.most_x[lane]));
+            out = hn::Or(out, apart(fan_.least_y, fan_.most_y, seen.least_y[lane], seen.most_y[lane]));
             if (certain)
                 for (std::size_t k = 0; k < 3; ++k) {
                     const auto most = hn::MulAdd(hn::Set(f, seen.edge[k][0][lane]),
