@@ -130,6 +130,13 @@ Vec3d about(Random& random, const Mesh& mesh, double farthest)
     return (low + high) * 0.5 + random.direction() * (length(high - low) * random.uniform(0, farthest));
 }
 
+// In an order in which neighbours are alike, as those of pixels are: what bounds some is narrower than what bounds all.
+void put_neighbours_together(std::vector<Ray>& rays, std::size_t axis)
+{
+    std::ranges::sort(
+        rays, {}, [axis](const Ray& ray) { return ray.direction[axis] / max_component(abs(ray.direction)); });
+}
+
 // Rays from one point, as a pinhole camera sends them: at places near each other, corners and edges among them.
 std::vector<Ray> camera_fan(Random& random, const Mesh& mesh, std::size_t count)
 {
@@ -145,6 +152,7 @@ std::vector<Ray> camera_fan(Random& random, const Mesh& mesh, std::size_t count)
         if (random.below(16) == 0) ray.t_max = random.uniform(0, 2) / speed;
         if (random.below(16) == 0) ray.t_min = random.uniform(0, 1) / speed;
     }
+    if (random.below(2) == 0) put_neighbours_together(rays, random.below(3));
     return rays;
 }
 
@@ -167,6 +175,7 @@ std::vector<Ray> light_fan(Random& random, const Mesh& mesh, std::size_t count)
         const double distance = length(ray.direction);
         ray = {from, ray.direction / distance, 0, distance * (1 - 0x1p-20)};
     }
+    if (random.below(2) == 0) put_neighbours_together(rays, random.below(3));
     return rays;
 }
 
