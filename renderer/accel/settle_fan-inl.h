@@ -49,18 +49,9 @@ public:
         for (; lanes != 0; lanes &= lanes - 1) {
             const unsigned ray = first + static_cast<unsigned>(__builtin_ctz(lanes));
             if (ray >= fan_.count) break;
-            if constexpr (kAnyHit) {
-                if ((found_ >> ray & 1) != 0) continue;
-                MeshHit hit{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
-                if (!decide(ray, triangle, hit)) continue;
-                found_ |= std::uint64_t{1} << ray;
-                fan_.end[ray] = -std::numeric_limits<float>::infinity();
-                drawn = true;
-            } else {
-                if (asked_ == kMostAsked) drawn = answer() || drawn;
-                ray_asked_[asked_] = ray;
-                triangle_asked_[asked_++] = triangle;
-            }
+            if (kAnyHit && (found_ >> ray & 1) != 0) continue;
+            asked_[count_++] = {ray, triangle};
+            if (count_ == kMostAsked) drawn = answer() || drawn;
         }
         return drawn;
     }
@@ -79,20 +70,20 @@ public:
     HWY_INLINE std::uint64_t settle()
     {
         const std::uint64_t all = ~std::uint64_t{0} >> (64 - fan_.count);
-        if (kAnyHit) return found_ & all;
         preferring_ &= all;
         found_ |= preferring_;
-        unsigned rays[kTogether];
+        Asked some[kTogether];
         unsigned count = 0;
         for (std::uint64_t left = preferring_; left != 0;) {
-            rays[count++] = static_cast<unsigned>(__builtin_ctzll(left));
+            const auto ray = static_cast<unsigned>(__builtin_ctzll(left));
+            some[count++] = {ray, preferred_[ray]};
             left &= left - 1;
             if (count < kTogether && left != 0) continue;
-            settle_some(rays, count);
+            test_some<true>(some, count);
             count = 0;
         }
         answer();
-        return found_;
+        return found_ & all;
     }
 
 private:
@@ -100,7 +91,13 @@ private:
     using V = TriangleLanes::V;
     using F = hn::Rebind<float, D>;
     static constexpr unsigned kTogether = TriangleLanes::kLanes;
-    static constexpr unsigned kMostAsked = 128;
+    // The nearest hit draws the rays' ends in and so leaves out many; any hit ends its ray, so that it is asked for soon.
+    static constexpr unsigned kMostAsked = kAnyHit ? kTogether : 128;
+
+    struct Asked {
+        unsigned ray;
+        std::uint32_t triangle;
+    };
 
     HWY_INLINE bool decide(unsigned ray, std::uint32_t triangle, MeshHit& best) const
     {
@@ -114,19 +111,36 @@ private:
                            best);
     }
 
-    // `best_` counts t in kernel units until then.
-    HWY_INLINE bool answer_one(unsigned ray, std::uint32_t triangle)
+    // One by one, where lanes do not tell. `best_` counts t in kernel units until then.
+    HWY_NOINLINE bool answer_one(const Asked& asked)
     {
-        const double units =
-            power_for(max_component(abs(rays_[ray].direction))) / static_cast<double>(mesh_.scale);
+        const auto [ray, triangle] = asked;
+        MeshHit hit{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
+        if (!decide(ray, triangle, hit)) return false;
+        hit.t *= power_for(max_component(abs(rays_[ray].direction))) / static_cast<double>(mesh_.scale);
+        return take(ray, hit);
+    }
+
+    HWY_INLINE bool improve(unsigned ray, const MeshHit& hit)
+    {
+        if constexpr (kAnyHit) return true;
         MeshHit& best = best_[ray];
-        best.t /= units;
-        const bool better = decide(ray, triangle, best);
-        best.t *= units;
-        if (!better) return false;
+        if (!(hit.t < best.t || (hit.t == best.t && hit.primitive < best.primitive))) return false;
+        best = hit;
+        return true;
+    }
+
+    // True where a ray's end was drawn in.
+    HWY_INLINE bool take(unsigned ray, const MeshHit& hit)
+    {
+        if (!improve(ray, hit)) return false;
         found_ |= std::uint64_t{1} << ray;
-        const auto depth = static_cast<float>(best.t * std::abs(rays_[ray].direction[fan_.z]));
-        fan_.end[ray] = std::min(fan_.end[ray], depth + depth * 0x1p-21f + 0x1p-80f);
+        if constexpr (kAnyHit) {
+            fan_.end[ray] = -std::numeric_limits<float>::infinity();
+        } else {
+            const auto depth = static_cast<float>(hit.t * std::abs(rays_[ray].direction[fan_.z]));
+            fan_.end[ray] = std::min(fan_.end[ray], depth + depth * 0x1p-21f + 0x1p-80f);
+        }
         bound_group(ray / RayFan::kGroup);
         return true;
     }
@@ -135,26 +149,27 @@ private:
     bool answer()
     {
         bool drawn = false;
-        for (unsigned i = 0; i < asked_; ++i)
-            drawn = answer_one(ray_asked_[i], triangle_asked_[i]) || drawn;
-        asked_ = 0;
+        for (unsigned i = 0; i < count_; i += kTogether)
+            drawn = test_some<false>(asked_ + i, std::min(kTogether, count_ - i)) || drawn;
+        count_ = 0;
         return drawn;
     }
 
-    // Rays that prefer a triangle.
-    HWY_INLINE void settle_some(const unsigned* rays, unsigned count)
+    // kCertain: float has said that they hit. True where a ray's end was drawn in.
+    template <bool kCertain>
+    HWY_INLINE bool test_some(const Asked* asked, unsigned count)
     {
         const D d;
         const F f;
         std::size_t kx = fan_.x, ky = fan_.y;
-        if (rays_[rays[0]].direction[fan_.z] < 0) std::swap(kx, ky);
+        if (rays_[asked[0].ray].direction[fan_.z] < 0) std::swap(kx, ky);
         const std::size_t axes[3] = {kx, ky, fan_.z};
         alignas(64) float corners[9][kTogether];
         alignas(64) double origins[3][kTogether], directions[3][kTogether], from[kTogether], to[kTogether];
         for (unsigned i = 0; i < kTogether; ++i) {
-            const unsigned ray = rays[i < count ? i : 0];
-            const TriangleBlock& block = mesh_.leaves[preferred_[ray] / TriangleBlock::kLanes];
-            const unsigned lane = preferred_[ray] % TriangleBlock::kLanes;
+            const auto [ray, triangle] = asked[i < count ? i : 0];
+            const TriangleBlock& block = mesh_.leaves[triangle / TriangleBlock::kLanes];
+            const unsigned lane = triangle % TriangleBlock::kLanes;
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 for (std::size_t k = 0; k < 3; ++k)
                     corners[3 * k + axis][i] = block.corners[k][axes[axis]][lane];
@@ -177,28 +192,35 @@ private:
         const TriangleLanes exact(origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR {
             return hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis]));
         });
-        // Where the weights need not be drawn onto the ray, the axes are the fan's, and the rest is as float said.
-        const V t = exact.t();
-        const auto within = hn::And(hn::Lt(hn::Mul(hn::Load(d, from), inverse), t),
-                                    hn::Lt(t, hn::Mul(hn::Load(d, to), inverse)));
-        const auto plain = hn::And(hn::And(exact.is_plain(), exact.runs_along_third()), within);
+        const V t = exact.t(), begin = hn::Mul(hn::Load(d, from), inverse);
+        auto within = hn::And(hn::Lt(begin, t), hn::Lt(t, hn::Mul(hn::Load(d, to), inverse)));
+        // Where the weights need not be drawn onto the ray, the axes are the fan's; the rest is as float said.
+        const auto plain = exact.is_plain();
+        auto known = hn::And(plain, within);
+        if constexpr (!kCertain) {
+            within = hn::And(known, hn::Gt(exact.lower_bound_of_t(), begin));
+            known = hn::Or(plain, exact.beside());
+        }
+        const unsigned hits = bits_of(d, within);
+        const unsigned told = bits_of(d, hn::And(known, exact.runs_along_third()));
         alignas(64) double out[4][kTogether];
         hn::Store(hn::Mul(t, power), d, out[0]);
         for (std::size_t k = 0; k < 3; ++k)
             hn::Store(exact.weight(k), d, out[1 + k]);
-        const unsigned as_said = bits_of(d, plain);
+        bool drawn = false;
         for (unsigned i = 0; i < count; ++i) {
-            const unsigned ray = rays[i];
-            if ((as_said >> i & 1) == 0) {
-                answer_one(ray, preferred_[ray]);
-                continue;
+            const auto [ray, triangle] = asked[i];
+            if ((told >> i & 1) == 0) {
+                drawn = answer_one(asked[i]) || drawn;
+            } else if ((hits >> i & 1) != 0) {
+                const TriangleBlock& block = mesh_.leaves[triangle / TriangleBlock::kLanes];
+                const MeshHit hit{out[0][i],
+                                  block.primitive[triangle % TriangleBlock::kLanes],
+                                  {out[1][i], out[2][i], out[3][i]}};
+                drawn = (kCertain ? improve(ray, hit) : take(ray, hit)) || drawn; // certain ones are found
             }
-            const std::uint32_t primitive = mesh_.leaves[preferred_[ray] / TriangleBlock::kLanes]
-                                                .primitive[preferred_[ray] % TriangleBlock::kLanes];
-            MeshHit& best = best_[ray];
-            if (out[0][i] < best.t || (out[0][i] == best.t && primitive < best.primitive))
-                best = {out[0][i], primitive, {out[1][i], out[2][i], out[3][i]}};
         }
+        return drawn;
     }
 
     const MeshView& mesh_;
@@ -206,9 +228,9 @@ private:
     const Ray* rays_;
     MeshHit* best_;
     std::uint64_t found_ = 0, preferring_ = 0;
-    unsigned asked_ = 0;
+    unsigned count_ = 0;
     std::uint32_t preferred_[RayFan::kRays];
-    std::uint32_t ray_asked_[kMostAsked], triangle_asked_[kMostAsked];
+    Asked asked_[kMostAsked];
 };
 
 } // namespace

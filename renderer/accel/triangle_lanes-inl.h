@@ -71,11 +71,11 @@ public:
                        hn::Gt(hn::Min(weights_[0], hn::Min(weights_[1], weights_[2])), hn::Zero(d)));
     }
 
-    // As WatertightRay names them, the third axis is the one that the ray runs along.
+    // WatertightRay names the axes so too: the third is the one that the ray runs along. Of two alike it takes either.
     HWY_INLINE M runs_along_third() const
     {
         const V one = hn::Set(D(), 1.0);
-        return hn::And(hn::Le(hn::Abs(sx_), one), hn::Le(hn::Abs(sy_), one));
+        return hn::And(hn::Lt(hn::Abs(sx_), one), hn::Lt(hn::Abs(sy_), one));
     }
 
     // The least that the true t can be: watertight::lower_bound_of_t.

@@ -142,7 +142,7 @@ ImportFault fault_of(const AssimpReader& reader, const Assimp::Importer& importe
     }
     if (!missing.empty())
         return {"missing_file",
-                "the " + reader.title + " names " + quoted(missing) +
+                "the " + reader.title + " names " + in_quotes(missing) +
                     ", which did not come with it: a job names it in its files"};
     const std::string words = importer.GetErrorString();
     return {code_of(words), "the " + reader.title + " cannot be read: " + clean_utf8(words)};

@@ -68,7 +68,7 @@ void keep_closed_glass(Mesh& mesh, std::vector<std::string>& notes)
         material.is_glass = false;
         material.is_transparent = true;
         if (notes.size() < kMostNotes)
-            notes.push_back("material " + quoted(material.name) +
+            notes.push_back("material " + in_quotes(material.name) +
                             " is of glass, but its triangles do not close a body: it is opaque");
     }
 }

@@ -91,7 +91,7 @@ std::optional<ImportFault> Flattener::make_piece(unsigned number)
             const unsigned from = face.mIndices[i];
             if (from >= mesh.mNumVertices)
                 return ImportFault{"index_out_of_range",
-                                   "mesh " + quoted(mesh.mName.C_Str()) + ", face " + std::to_string(f) +
+                                   "mesh " + in_quotes(mesh.mName.C_Str()) + ", face " + std::to_string(f) +
                                        ": vertex " + std::to_string(from) + "; it has " +
                                        std::to_string(mesh.mNumVertices)};
             if (made[from] == kUnused) {
@@ -116,7 +116,7 @@ std::optional<ImportFault> Flattener::make_piece(unsigned number)
             outline.push_back(to_double(piece.positions[corner]));
         if (!triangulate(outline, pieces))
             return ImportFault{"over_limit",
-                               "mesh " + quoted(mesh.mName.C_Str()) + ", face " + std::to_string(f) +
+                               "mesh " + in_quotes(mesh.mName.C_Str()) + ", face " + std::to_string(f) +
                                    ": a concave polygon of " + std::to_string(corners.size()) +
                                    " corners, the limit is " + std::to_string(kMostConcaveCorners) +
                                    ": export triangles"};

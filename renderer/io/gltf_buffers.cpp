@@ -95,7 +95,7 @@ Check BufferCheck::buffer(std::size_t number, std::optional<Bytes> binary)
         bytes = open_uri(files_, *b.uri);
         if (!bytes)
             return ImportFault{"missing_file",
-                               "the glTF names " + quoted(*b.uri) +
+                               "the glTF names " + in_quotes(*b.uri) +
                                    ", which did not come with it: a job names it in its files"};
     } else if (number != 0 || !binary) {
         return malformed("buffer", number, "has no uri, and there is no binary chunk for it");

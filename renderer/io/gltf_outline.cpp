@@ -33,7 +33,7 @@ private:
         if (key.empty())
             why_ = "a member's name is empty or escaped";
         else if (!seen.emplace(key).second)
-            why_ = "member " + quoted(key) + " stands there twice";
+            why_ = "member " + in_quotes(key) + " stands there twice";
         return why_.empty();
     }
     // An object's members, each once; `member` consumes the value.

@@ -62,11 +62,11 @@ std::optional<ImportFault> check_chains(const std::vector<std::uint32_t>& parent
 std::optional<ImportFault> check_gltf_tree(const GltfOutline& outline)
 {
     if (!outline.version.starts_with("2."))
-        return ImportFault{"unsupported", "glTF version " + quoted(outline.version) + "; 2.0 is read"};
+        return ImportFault{"unsupported", "glTF version " + in_quotes(outline.version) + "; 2.0 is read"};
     for (const std::string_view extension : outline.required_extensions)
         if (!is_readable(extension))
             return ImportFault{"unsupported",
-                               "the glTF requires extension " + quoted(extension) + ": export without it"};
+                               "the glTF requires extension " + in_quotes(extension) + ": export without it"};
     constexpr std::uint32_t kRoot = 0xffffffff;
     std::vector<std::uint32_t> parents(outline.children.size(), kRoot);
     for (std::uint32_t node = 0; node < outline.children.size(); ++node)

@@ -72,7 +72,7 @@ ImageResult import_image(std::string_view name, std::span<const std::byte> bytes
     if (is_named_tga(name) || is_tga(bytes)) return read_tga(bytes, limits);
     return ImportFault{"unknown_format",
                        bytes.empty() ? "the file is empty"
-                                     : "the file begins with " + quoted(text.substr(0, 16)) +
+                                     : "the file begins with " + in_quotes(text.substr(0, 16)) +
                                            ", which is no picture of what is read: " + image_format_titles()};
 }
 

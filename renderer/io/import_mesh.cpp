@@ -119,7 +119,7 @@ read(Format format, std::span<const std::byte> bytes, CompanionFiles& files, con
         break;
     }
     return ImportFault{"unknown_format",
-                       "the file begins with " + quoted(text_of(bytes).substr(0, 16)) +
+                       "the file begins with " + in_quotes(text_of(bytes).substr(0, 16)) +
                            ", which is none of what is read: " + mesh_format_titles()};
 }
 

@@ -113,7 +113,7 @@ std::variant<PlyHeader, ImportFault> read_ply_header(std::string_view text)
             good = take_element(rest, header);
         else if (word == "property")
             good = take_property(rest, header);
-        if (!good) return fault(quoted(trimmed(*line)) + " is not understood");
+        if (!good) return fault(in_quotes(trimmed(*line)) + " is not understood");
     }
     return ImportFault{"truncated", "the PLY header ends without end_header: send the file whole"};
 }

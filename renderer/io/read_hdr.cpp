@@ -67,11 +67,11 @@ std::optional<ImportFault> HdrReader::header()
         at_ = end + 1;
         if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
             return ImportFault{"unsupported",
-                               "the HDR has " + quoted(line.substr(7)) + "; 32-bit_rle_rgbe is read"};
+                               "the HDR has " + in_quotes(line.substr(7)) + "; 32-bit_rle_rgbe is read"};
         if (line.starts_with("EXPOSURE=")) {
             const auto value = parse_float(trimmed(line.substr(9)));
             if (!value || !(*value > 0) || !std::isfinite(*value))
-                return ImportFault{"malformed", "the HDR's exposure is " + quoted(line.substr(9))};
+                return ImportFault{"malformed", "the HDR's exposure is " + in_quotes(line.substr(9))};
             exposure_ *= *value;
         }
         if (!line.empty()) continue;
@@ -80,7 +80,7 @@ std::optional<ImportFault> HdrReader::header()
         const auto size = read_resolution(text.substr(at_, last - at_));
         if (!size)
             return ImportFault{"unsupported",
-                               "the HDR's size is " + quoted(text.substr(at_, last - at_)) +
+                               "the HDR's size is " + in_quotes(text.substr(at_, last - at_)) +
                                    "; \"-Y height +X width\" and \"+Y height +X width\" are read"};
         at_ = last + 1;
         size_ = *size;

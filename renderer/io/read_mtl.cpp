@@ -242,7 +242,7 @@ void MtlReader::end_material()
         return;
     }
     if (++colorless_ <= kMostNames)
-        colorless_names_ += (colorless_ > 1 ? ", " : "") + quoted(material_->name);
+        colorless_names_ += (colorless_ > 1 ? ", " : "") + in_quotes(material_->name);
     else if (colorless_ == kMostNames + 1)
         colorless_names_ += ", ...";
 }
@@ -268,17 +268,17 @@ bool MtlReader::read()
             has_color_ = has_bumps_ = false;
         } else if (!statement(word, rest) && ++bad_lines <= kMostBadLines) {
             note(clean_utf8(file_) + ", line " + std::to_string(lines_.number()) + ": " +
-                 quoted(trimmed(*line)) + " cannot be read; the default stays");
+                 in_quotes(trimmed(*line)) + " cannot be read; the default stays");
         }
     }
     end_material();
     if (colorless_)
-        note(quoted(file_) + ": " + std::to_string(colorless_) +
+        note(in_quotes(file_) + ": " + std::to_string(colorless_) +
              (colorless_ == 1 ? " material has no readable Kd and is grey (0.5): "
                               : " materials have no readable Kd and are grey (0.5): ") +
              colorless_names_);
     if (bumpy_)
-        note(quoted(file_) + ": " + std::to_string(bumpy_) +
+        note(in_quotes(file_) + ": " + std::to_string(bumpy_) +
              (bumpy_ == 1 ? " material has a bump map" : " materials have bump maps") +
              ", heights in no known unit, which are left out; a map of normals is named by norm");
     return true;

@@ -82,7 +82,7 @@ ObjReader::Check ObjReader::vertex(std::string_view rest)
 {
     const std::string_view words = trimmed(rest);
     const auto p = take_point(rest);
-    if (!p) return unreadable("a vertex needs three numbers, not " + quoted(words));
+    if (!p) return unreadable("a vertex needs three numbers, not " + in_quotes(words));
     if (!is_finite(to_float(*p)))
         return fault("non_finite", "vertex " + std::to_string(obj_.positions.size() + 1) + " is not finite");
     obj_.positions.push_back(*p);
@@ -123,12 +123,12 @@ ObjReader::Check ObjReader::corner(std::string_view word, ObjCorner& corner)
         at = slash == end ? end : slash + 1;
         if (number.empty() && kind) continue;
         const auto index = parse_integer(number);
-        if (!index) return unreadable("face corner " + quoted(word) + " is not v, v/vt, v//vn or v/vt/vn");
+        if (!index) return unreadable("face corner " + in_quotes(word) + " is not v, v/vt, v//vn or v/vt/vn");
         const std::int64_t from_zero =
             *index > 0 ? *index - 1 : static_cast<std::int64_t>(known[kind]) + *index;
         if (*index == 0 || from_zero < 0 || from_zero >= ObjCorner::kNone)
             return fault("index_out_of_range",
-                         "face corner " + quoted(word) + " names " + std::string(kKinds[kind]) + " " +
+                         "face corner " + in_quotes(word) + " names " + std::string(kKinds[kind]) + " " +
                              std::to_string(*index) + "; " + std::to_string(known[kind]) + " are known here");
         corner.at[kind] = static_cast<std::uint32_t>(from_zero);
         if (*index > 0 && std::uint64_t(*index) > largest_[kind]) {
@@ -136,7 +136,7 @@ ObjReader::Check ObjReader::corner(std::string_view word, ObjCorner& corner)
             largest_line_[kind] = lines_.number();
         }
     }
-    if (at != end) return unreadable("face corner " + quoted(word) + " has more than three numbers");
+    if (at != end) return unreadable("face corner " + in_quotes(word) + " has more than three numbers");
     return std::nullopt;
 }
 
@@ -251,7 +251,7 @@ ObjReader::Check ObjReader::material_file(std::string_view name, std::string_vie
     if (!material_files_.emplace(name).second) return std::nullopt;
     if (read_mtl(text, name, images_, result_.mesh.materials, result_.notes)) return std::nullopt;
     return ImportFault{"over_limit",
-                       "the material files up to " + quoted(name) + " have more than " +
+                       "the material files up to " + in_quotes(name) + " have more than " +
                            std::to_string(kMostMaterials) + " materials, which is the limit"};
 }
 
@@ -266,7 +266,7 @@ ObjReader::Check ObjReader::material_files(std::string_view names)
         } else if (missing_files_.size() < kMostNotes && result_.notes.size() < kMostNotes &&
                    missing_files_.emplace(name).second) {
             result_.notes.push_back(
-                "material file " + quoted(name) +
+                "material file " + in_quotes(name) +
                 " did not come with the mesh (a job names it in its files); its materials are grey");
         }
     }
@@ -323,7 +323,7 @@ void ObjReader::finish_materials()
     for (const std::string& name : obj_.material_names) {
         number_by_name.push_back(number_of(&name));
         if (!numbers.contains(name) && result_.notes.size() < kMostNotes)
-            result_.notes.push_back("material " + quoted(name) + " is in no material file; it is grey");
+            result_.notes.push_back("material " + in_quotes(name) + " is in no material file; it is grey");
     }
     Array<std::uint16_t>& numbered = result_.mesh.triangle_materials;
     numbered.reserve(obj_.triangles());

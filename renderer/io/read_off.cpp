@@ -91,7 +91,8 @@ OffReader::Check OffReader::head()
     const auto vertices = parse_integer(take_word(rest)), faces = parse_integer(take_word(rest));
     if (counts.empty()) return fault("truncated", "the OFF ends before its counts: send the file whole");
     if (!vertices || !faces || *vertices < 0 || *faces < 0)
-        return fault("malformed", quoted(counts) + " where the numbers of vertices and faces should stand");
+        return fault("malformed",
+                     in_quotes(counts) + " where the numbers of vertices and faces should stand");
     vertices_ = static_cast<std::uint64_t>(*vertices);
     faces_ = static_cast<std::uint64_t>(*faces);
     // "0 0 0\n" and "3 0 0 0\n", the last one without its end.
@@ -117,7 +118,7 @@ OffReader::Check OffReader::vertex(std::string_view line)
             take_word(line);
     const auto u = kind_.has_uvs ? take_float(line) : 0.0f, v = kind_.has_uvs ? take_float(line) : 0.0f;
     if (!p || !n || !u || !v)
-        return fault("malformed", "vertex " + number + " needs more numbers than " + quoted(words));
+        return fault("malformed", "vertex " + number + " needs more numbers than " + in_quotes(words));
     if (!is_finite(to_float(*p)) || !is_finite(*n) || !is_finite(Vec3f{*u, *v, 0}))
         return fault("non_finite", "vertex " + number + " is not finite");
     places_.push_back(*p);
@@ -147,7 +148,7 @@ OffReader::Check OffReader::face(std::string_view line)
         if (!index)
             return fault("malformed",
                          "a face of " + std::to_string(*corners) + " corners, but number " +
-                             std::to_string(i) + " is " + quoted(word));
+                             std::to_string(i) + " is " + in_quotes(word));
         if (*index < 0 || static_cast<std::uint64_t>(*index) >= vertices_)
             return fault("index_out_of_range",
                          "a face names vertex " + std::to_string(*index) + "; the file has " +

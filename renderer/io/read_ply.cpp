@@ -120,7 +120,7 @@ PlyReader::Check PlyReader::promises_fit() const
         if (element.count > room / each)
             return ImportFault{"truncated",
                                "the header promises " + std::to_string(element.count) + " of element " +
-                                   quoted(element.name) + ", at least " + std::to_string(each) +
+                                   in_quotes(element.name) + ", at least " + std::to_string(each) +
                                    " bytes each, but only " + std::to_string(room) +
                                    " bytes are left for them"};
         room -= element.count * each;
@@ -350,7 +350,7 @@ PlyReader::Check PlyReader::faces(const PlyElement& element, Build build)
     for (std::size_t i = 0; i < element.properties.size(); ++i)
         if (is_index_list(element.properties[i])) wanted = i;
     if (wanted == element.properties.size() && element.count > 0)
-        return ImportFault{"malformed", "element " + quoted(element.name) + " has no list vertex_indices"};
+        return ImportFault{"malformed", "element " + in_quotes(element.name) + " has no list vertex_indices"};
     const bool are_polygons = build == &PlyReader::polygon;
     if (are_polygons) result_.mesh.triangles.reserve(result_.mesh.triangles.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {

@@ -143,7 +143,7 @@ private:
                       "the STL ends where " + std::string(wanted) + " should stand: send the file whole"};
         else
             fault_ = {"malformed",
-                      "line " + std::to_string(words_.line()) + ": " + quoted(word) + " where " +
+                      "line " + std::to_string(words_.line()) + ": " + in_quotes(word) + " where " +
                           std::string(wanted) + " should stand"};
     }
     bool expect(std::string_view wanted)

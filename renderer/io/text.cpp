@@ -248,7 +248,7 @@ std::uint64_t line_of(std::string_view text, std::size_t offset)
     return 1 + static_cast<std::uint64_t>(std::count(before.begin(), before.end(), '\n'));
 }
 
-std::string quoted(std::string_view text)
+std::string in_quotes(std::string_view text)
 {
     constexpr std::size_t kLongest = 40;
     std::string out(1, '"');

@@ -59,7 +59,7 @@ private:
 };
 
 std::uint64_t line_of(std::string_view text, std::size_t offset); // counted from 1
-std::string quoted(std::string_view text);                        // for messages: bounded, printable
+std::string in_quotes(std::string_view text);                     // for messages: bounded, printable
 
 // The text with what is not UTF-8 (or a control character) replaced, at most `longest` bytes.
 std::string clean_utf8(std::string_view text, std::size_t longest = 256);

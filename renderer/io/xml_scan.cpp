@@ -156,7 +156,7 @@ XmlScan::Event XmlScan::attributes()
         if (quote != '"' && quote != '\'') return fail("an attribute's value is not quoted");
         const std::size_t end = text_.find(quote, at_);
         if (end == text_.npos) return ends();
-        if (attribute(name)) return fail("attribute " + quoted(name) + " stands there twice");
+        if (attribute(name)) return fail("attribute " + in_quotes(name) + " stands there twice");
         attributes_.push_back({name, text_.substr(at_, end - at_)});
         at_ = end + 1;
     }

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kJson = "application/json";
 constexpr const char* kProblem = "application/problem+json";
 
-std::string quoted(const std::string& etag)
+std::string in_quotes(const std::string& etag)
 {
     return '"' + etag + '"';
 }
@@ -84,7 +84,7 @@ void reply_problem(Exchange& exchange, api::ProblemDetails problem, int retry_af
 void reply_payload(Exchange& exchange, const Payload& payload)
 {
     httplib::Response& response = exchange.response;
-    response.set_header("ETag", quoted(payload.digest));
+    response.set_header("ETag", in_quotes(payload.digest));
     response.set_header("Repr-Digest", repr_digest(payload.digest));
     response.set_header("Accept-Ranges", "bytes");
     if (names_etag(exchange.header("If-None-Match"), payload.digest)) {
@@ -93,7 +93,7 @@ void reply_payload(Exchange& exchange, const Payload& payload)
     }
     // If-Range names the state that the range is of; of another state the whole is sent (RFC 9110, 13.1.5).
     const bool same_state =
-        !exchange.has_header("If-Range") || exchange.header("If-Range") == quoted(payload.digest);
+        !exchange.has_header("If-Range") || exchange.header("If-Range") == in_quotes(payload.digest);
     const auto range = same_state ? read_byte_range(exchange.header("Range"), payload.size) : ByteRange{};
     switch (range.kind) {
     case ByteRange::Kind::whole:
@@ -117,7 +117,7 @@ void reply_payload(Exchange& exchange, const Payload& payload)
 
 void reply_json_with_etag(Exchange& exchange, const std::string& json, const std::string& etag)
 {
-    exchange.response.set_header("ETag", quoted(etag));
+    exchange.response.set_header("ETag", in_quotes(etag));
     if (names_etag(exchange.header("If-None-Match"), etag))
         exchange.response.status = 304;
     else
@@ -153,7 +153,7 @@ api::ProblemDetails query_problem(std::string code, std::string detail)
 bool names_etag(const std::string& header, const std::string& etag)
 {
     if (header == "*") return true;
-    const std::string tag = quoted(etag);
+    const std::string tag = in_quotes(etag);
     for (std::size_t at = header.find(tag); at != std::string::npos; at = header.find(tag, at + 1)) {
         const std::size_t end = at + tag.size();
         const bool starts =

@@ -203,6 +203,35 @@ TEST_P(EveryMeshKernel, FollowsFansToALightAsBruteForceWould)
     EXPECT_GT(hits_, rays_ / 5);
 }
 
+// Along most rays two axes are as much as each other, and which of them a ray counts as running along may not depend on
+// the first of the fan, along which one is a little more.
+TEST_P(EveryMeshKernel, FollowsFansAlongTheDiagonalsOfAxes)
+{
+    Random random(41);
+    for (const Mesh& mesh : ten_meshes()) {
+        const MeshBvh bvh = build(mesh);
+        for (std::size_t across = 0; across < 3; ++across) {
+            const Vec3d target = place_on(random, mesh);
+            Vec3d along{random.below(2) == 0 ? 1.0 : -1.0, 1, random.below(2) == 0 ? 1.0 : -1.0};
+            along[across] = 0;
+            const double distance = length(to_double(mesh.bounds().extent())) * random.uniform(0.1, 3);
+            const Vec3d eye = target - along * distance;
+            std::vector<Ray> out(kRun), back(kRun);
+            for (std::size_t i = 0; i < kRun; ++i) {
+                Vec3d direction = along * random.uniform(0.5, 2);
+                direction[across] = random.uniform(-0.2, 0.2);
+                if (i == 0) direction[(across + 1 + random.below(2)) % 3] *= 1.001;
+                out[i] = {eye, direction};
+                const double far = distance * 2;
+                back[i] = {eye + direction * far, -direction, 0, far};
+            }
+            expect_as_brute_force(bvh, out);
+            expect_as_brute_force(bvh, back);
+        }
+    }
+    EXPECT_GT(hits_, 0u);
+}
+
 TEST_P(EveryMeshKernel, FollowsRaysThatHaveNothingInCommon)
 {
     Random random(32);
