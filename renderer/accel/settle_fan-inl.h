@@ -69,21 +69,9 @@ public:
     // The exact hits. Bit i: ray i hit.
     HWY_INLINE std::uint64_t settle()
     {
-        const std::uint64_t all = ~std::uint64_t{0} >> (64 - fan_.count);
-        preferring_ &= all;
-        found_ |= preferring_;
-        Asked some[kTogether];
-        unsigned count = 0;
-        for (std::uint64_t left = preferring_; left != 0;) {
-            const auto ray = static_cast<unsigned>(__builtin_ctzll(left));
-            some[count++] = {ray, preferred_[ray]};
-            left &= left - 1;
-            if (count < kTogether && left != 0) continue;
-            test_some<true>(some, count);
-            count = 0;
-        }
+        if constexpr (!kAnyHit) settle_preferred();
         answer();
-        return found_ & all;
+        return found_ & rays_there();
     }
 
 private:
@@ -98,6 +86,24 @@ private:
         unsigned ray;
         std::uint32_t triangle;
     };
+
+    HWY_INLINE std::uint64_t rays_there() const { return ~std::uint64_t{0} >> (64 - fan_.count); }
+
+    HWY_INLINE void settle_preferred()
+    {
+        preferring_ &= rays_there();
+        found_ |= preferring_;
+        Asked some[kTogether];
+        unsigned count = 0;
+        for (std::uint64_t left = preferring_; left != 0;) {
+            const auto ray = static_cast<unsigned>(__builtin_ctzll(left));
+            some[count++] = {ray, preferred_[ray]};
+            left &= left - 1;
+            if (count < kTogether && left != 0) continue;
+            test_some<true>(some, count);
+            count = 0;
+        }
+    }
 
     HWY_INLINE bool decide(unsigned ray, std::uint32_t triangle, MeshHit& best) const
     {

@@ -9,7 +9,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -20,13 +19,6 @@ namespace bench {
 namespace {
 
 using namespace renderer;
-
-struct Options {
-    std::vector<std::string> meshes;
-    std::string folder;
-    int repeats = 5;
-    std::uint32_t width_px = 64, samples = 1;
-};
 
 struct NamedMesh {
     std::string name;
@@ -46,7 +38,7 @@ NamedMesh at_unit_size(NamedMesh named)
     return named;
 }
 
-std::vector<NamedMesh> meshes_of(const Options& options)
+std::vector<NamedMesh> meshes_of(const EvaluationOptions& options)
 {
     std::vector<NamedMesh> meshes;
     for (const std::string& path : options.meshes)
@@ -58,7 +50,7 @@ std::vector<NamedMesh> meshes_of(const Options& options)
     return meshes;
 }
 
-Subject subject_of(std::string name, const Options& options)
+Subject subject_of(std::string name, const EvaluationOptions& options)
 {
     Subject subject{std::move(name), {}, {}, {}};
     subject.settings.image.width_px = options.width_px;
@@ -74,7 +66,7 @@ void add_mesh(Subject& subject, const NamedMesh& named)
 }
 
 // One mesh, from the renderer's own point of view and in its own light.
-Subject alone(const NamedMesh& named, const Options& options)
+Subject alone(const NamedMesh& named, const EvaluationOptions& options)
 {
     Subject subject = subject_of(named.name, options);
     add_mesh(subject, named);
@@ -83,7 +75,7 @@ Subject alone(const NamedMesh& named, const Options& options)
 }
 
 // Each mesh several times on a floor, a point light and a sky above.
-Subject together(const std::vector<NamedMesh>& meshes, const Options& options)
+Subject together(const std::vector<NamedMesh>& meshes, const EvaluationOptions& options)
 {
     Subject subject = subject_of("a scene", options);
     for (const NamedMesh& named : meshes)
@@ -116,7 +108,7 @@ tree(BvhSplit split, BvhWidth width, BvhLevels levels = BvhLevels::two, unsigned
     return {.split = split, .width = width, .levels = levels, .threads = threads};
 }
 
-Figure bounding_boxes(const std::vector<NamedMesh>& meshes, const Options& options)
+Figure bounding_boxes(const std::vector<NamedMesh>& meshes, const EvaluationOptions& options)
 {
     Figure figure{.name = "bounding_boxes",
                   .title = "A bounding box around each object",
@@ -142,7 +134,7 @@ std::vector<Variant> trees()
             {"SAH, wide, on meshes and scene", tree(BvhSplit::sah, BvhWidth::wide)}};
 }
 
-Figure hierarchies(const Subject& scene, const Options& options)
+Figure hierarchies(const Subject& scene, const EvaluationOptions& options)
 {
     return {.name = "hierarchies",
             .title = "Bounding volume hierarchies",
@@ -151,7 +143,7 @@ Figure hierarchies(const Subject& scene, const Options& options)
 }
 
 // The same hills, more finely cut.
-Figure growth(const Options& options)
+Figure growth(const EvaluationOptions& options)
 {
     Figure figure{.name = "growth",
                   .title = "With the number of triangles",
@@ -176,7 +168,7 @@ Subject larger(Subject subject)
     return subject;
 }
 
-Figure threads(const Subject& scene, const Options& options)
+Figure threads(const Subject& scene, const EvaluationOptions& options)
 {
     const auto with = [](unsigned count, std::uint32_t tile_px) {
         return AccelerationSettings{.threads = count, .tile_px = tile_px};
@@ -197,7 +189,7 @@ Figure threads(const Subject& scene, const Options& options)
                                     options.repeats)}};
 }
 
-Figure overall(const Subject& scene, const Options& options)
+Figure overall(const Subject& scene, const EvaluationOptions& options)
 {
     AccelerationSettings midpoint_threads = tree(BvhSplit::midpoint, BvhWidth::binary, BvhLevels::two, 0);
     return {.name = "overall",
@@ -217,7 +209,9 @@ Figure overall(const Subject& scene, const Options& options)
                         options.repeats)}};
 }
 
-void run(const Options& options)
+} // namespace
+
+void run_evaluation(const EvaluationOptions& options)
 {
     std::filesystem::create_directories(options.folder);
     const std::vector<NamedMesh> meshes = meshes_of(options);
@@ -239,28 +233,6 @@ void run(const Options& options)
             for (const Row& row : c.rows)
                 if (!row.same_picture)
                     throw std::runtime_error("the picture differs: " + c.subject + ", " + row.variant);
-}
-
-} // namespace
-
-void add_evaluation(CLI::App& app)
-{
-    CLI::App* const command = app.add_subcommand(
-        "evaluation", "one picture with boxes, trees of every kind, threads and tiles, and without");
-    const auto options = std::make_shared<Options>();
-    command->add_option("--mesh", options->meshes, "mesh files; without one, hills");
-    command->add_option("--out", options->folder, "folder for evaluation.json and the charts (SVG)")
-        ->required();
-    command->add_option("--repeats", options->repeats, "the medians are told")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    command->add_option("--width", options->width_px, "of the small pictures, in pixels; 4:3")
-        ->check(CLI::Range(8, 4096))
-        ->capture_default_str();
-    command->add_option("--samples", options->samples, "a pixel, of the small pictures")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
-    command->callback([options] { run(*options); });
 }
 
 } // namespace bench

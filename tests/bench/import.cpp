@@ -17,7 +17,6 @@
 #include <assimp/scene.h>
 #include <nlohmann/json.hpp>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -33,12 +32,6 @@ namespace bench {
 namespace {
 
 using nlohmann::json;
-
-struct Options {
-    std::string file, peer;
-    int repeats = 5;
-    bool as_json = false;
-};
 
 double cpu_ms()
 {
@@ -109,7 +102,7 @@ void read_with_assimp(const std::string& path)
     if (!importer.ReadFile(path, 0)) throw std::runtime_error(path + ": " + importer.GetErrorString());
 }
 
-json measure(const Options& options)
+json measure(const ImportOptions& options)
 {
     Times read, parse, validate, child, tree, peer;
     std::uint64_t child_peak = 0, triangles = 0;
@@ -152,7 +145,9 @@ json measure(const Options& options)
     return figures;
 }
 
-void run(const Options& options)
+} // namespace
+
+void run_import(const ImportOptions& options)
 {
     const json figures = measure(options);
     if (options.as_json) {
@@ -176,21 +171,6 @@ void run(const Options& options)
                 figures["whole_over_read_and_tree"].get<double>());
     if (figures.contains("assimp"))
         std::printf("parse over assimp: %.2f\n", figures["parse_over_assimp"].get<double>());
-}
-
-} // namespace
-
-void add_import(CLI::App& app)
-{
-    CLI::App* const command = app.add_subcommand("import", "from a mesh file to a tree, stage by stage");
-    const auto options = std::make_shared<Options>();
-    command->add_option("file", options->file, "mesh file")->required()->check(CLI::ExistingFile);
-    command->add_option("--peer", options->peer, "beside: assimp")->check(CLI::IsMember({"assimp"}));
-    command->add_option("--repeats", options->repeats, "of every stage")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    command->add_flag("--json", options->as_json, "figures as JSON");
-    command->callback([options] { run(*options); });
 }
 
 } // namespace bench

@@ -9,7 +9,6 @@
 #include "tests/bench/commands.h"
 #include "tests/bench/ray_engine.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -25,13 +24,6 @@ namespace {
 
 using namespace renderer;
 using random_scenes::Random;
-
-struct Options {
-    double rays = 1e8;
-    std::vector<std::string> meshes;
-    std::string peer;
-    unsigned threads = 1;
-};
 
 // Where a model stands and how it is kept there.
 struct Stand {
@@ -165,7 +157,7 @@ std::uint64_t sum_of(const std::vector<Count>& counts, std::uint64_t Count::*wha
     return sum;
 }
 
-std::vector<Model> models_for(const Options& options)
+std::vector<Model> models_for(const LeaksOptions& options)
 {
     std::vector<Model> models{icosphere(4, 2),
                               torus_knot(192, 24),
@@ -234,7 +226,9 @@ private:
     std::map<std::string, Count> peers_;
 };
 
-void run(const Options& options)
+} // namespace
+
+void run_leaks(const LeaksOptions& options)
 {
     ThreadPool pool(options.threads);
     const auto models = models_for(options);
@@ -260,25 +254,6 @@ void run(const Options& options)
             table.add(model, stand, trace_mesh(closed, bvh, peers, blocks, seed++ << 32, pool), peers);
         }
     if (table.finish() != 0) throw std::runtime_error("rays slipped through closed meshes");
-}
-
-} // namespace
-
-void add_leaks(CLI::App& app)
-{
-    CLI::App* const command =
-        app.add_subcommand("leaks", "rays that slip through the edges and corners of closed meshes");
-    const auto options = std::make_shared<Options>();
-    command->add_option("--rays", options->rays, "in all, over meshes, places and kernels")
-        ->check(CLI::Range(1.0, 1e15))
-        ->capture_default_str();
-    command->add_option("--mesh", options->meshes, "mesh files to aim at as well, where they are closed");
-    command->add_option("--peer", options->peer, "engine to count beside ours")
-        ->check(CLI::IsMember({"embree"}));
-    command->add_option("--threads", options->threads, "threads that trace")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-    command->callback([options] { run(*options); });
 }
 
 } // namespace bench

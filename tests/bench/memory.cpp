@@ -8,7 +8,6 @@
 #include "tests/bench/stopwatch.h"
 #include "tests/bench/terrain.h"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -24,12 +23,6 @@ namespace bench {
 namespace {
 
 using namespace renderer;
-
-struct Options {
-    std::uint64_t triangles = 1'000'000;
-    std::uint32_t instances = 0;
-    unsigned threads = 1;
-};
 
 // Of this process, in bytes.
 std::uint64_t status_bytes(const std::string& name)
@@ -121,7 +114,9 @@ double million_rays_a_second(const InstanceTree& tree)
     return kRuns * kRays / seconds / 1e6;
 }
 
-void run(const Options& options)
+} // namespace
+
+void run_memory(const MemoryOptions& options)
 {
     ThreadPool pool(options.threads);
     Mesh made = terrain_mesh(options.triangles);
@@ -146,22 +141,6 @@ void run(const Options& options)
     std::printf("upper level built in %.1f ms of processor time; %.3f million rays a second of it\n",
                 1e3 * build_s,
                 million_rays_a_second(tree));
-}
-
-} // namespace
-
-void add_memory(CLI::App& app)
-{
-    CLI::App* const command =
-        app.add_subcommand("memory", "memory of trees and of building them, as predicted and as measured");
-    const auto options = std::make_shared<Options>();
-    command->add_option("--triangles", options->triangles, "of the mesh")->capture_default_str();
-    command->add_option("--instances", options->instances, "of the mesh; 0: the mesh alone")
-        ->capture_default_str();
-    command->add_option("--threads", options->threads, "that build")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-    command->callback([options] { run(*options); });
 }
 
 } // namespace bench

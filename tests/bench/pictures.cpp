@@ -12,7 +12,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -24,14 +23,6 @@ namespace bench {
 namespace {
 
 using nlohmann::json;
-
-struct Options {
-    std::vector<std::string> scenes;
-    std::uint32_t samples = 16;
-    std::uint32_t side_px = 256;
-    int repeats = 5;
-    bool json = false;
-};
 
 // The box of the classic experiment: walls 0.73, red and green, two blocks, a lamp of radiance 17.
 json cornell(const char* transport)
@@ -84,7 +75,7 @@ struct Made {
     renderer::RenderSettings settings;
 };
 
-Made make(const clients::JobSource& source, const Options& options, renderer::ThreadPool& pool)
+Made make(const clients::JobSource& source, const PicturesOptions& options, renderer::ThreadPool& pool)
 {
     clients::LocalJob job = clients::load_local_job(source, clients::read_request(source));
     renderer::RenderSettings settings = job.request.settings;
@@ -127,7 +118,9 @@ json measure(const std::string& name, const Made& made, unsigned threads, int re
             {"rays_per_sample", rays / samples}};
 }
 
-void run(const Options& options)
+} // namespace
+
+void run_pictures(const PicturesOptions& options)
 {
     std::vector<clients::JobSource> sources;
     for (const std::string& scene : options.scenes)
@@ -163,27 +156,6 @@ void run(const Options& options)
         }
     }
     if (options.json) std::printf("%s\n", all.dump(2).c_str());
-}
-
-} // namespace
-
-void add_pictures(CLI::App& app)
-{
-    auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("pictures", "seconds and samples a second of whole pictures");
-    command->add_option("scenes", options->scenes, "job files; none: a Cornell box")
-        ->check(CLI::ExistingFile);
-    command->add_option("--samples", options->samples, "a pixel")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    command->add_option("--width", options->side_px, "of the picture, pixels")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    command->add_option("--repeats", options->repeats, "of each")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    command->add_flag("--json", options->json, "figures as JSON");
-    command->callback([options] { run(*options); });
 }
 
 } // namespace bench

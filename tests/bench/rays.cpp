@@ -10,7 +10,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -24,16 +23,6 @@ namespace bench {
 namespace {
 
 using namespace renderer;
-
-struct Options {
-    std::string mesh, view = "object", peer, split = "sah", json;
-    std::vector<std::string> only;
-    std::uint64_t terrain = 0; // triangles; 0: the mesh file
-    std::vector<double> diagonals{0};
-    std::vector<unsigned> threads{1};
-    bool table = false, every_kernel = false;
-    int repeats = 5;
-};
 
 using Engines = std::vector<std::unique_ptr<RayEngine>>;
 
@@ -55,7 +44,7 @@ void take_turns(std::size_t engines, int repeats, const Measure& measure)
             measure((i + static_cast<std::size_t>(repeat)) % engines);
 }
 
-void measure_builds(Case& c, const Options& options)
+void measure_builds(Case& c, const RaysOptions& options)
 {
     for (const unsigned threads : options.threads) {
         std::vector<std::vector<double>> cpu(c.engines.size()), wall(c.engines.size());
@@ -105,7 +94,7 @@ Traced trace_all(const RayEngine& engine, const RaySet& set, ThreadPool& pool, u
     return traced;
 }
 
-void measure_set(Case& c, const RaySet& set, const Options& options)
+void measure_set(Case& c, const RaySet& set, const RaysOptions& options)
 {
     for (EngineReport& engine : c.report.engines)
         engine.sets.push_back({set.name, {}, {}});
@@ -140,7 +129,7 @@ void measure_set(Case& c, const RaySet& set, const Options& options)
             compare_hits(c.mesh, set, {*c.engines.front(), ours}, {*c.engines[e], answers_of(*c.engines[e])});
 }
 
-std::vector<RaySet> sets_of(const Case& c, const Options& options)
+std::vector<RaySet> sets_of(const Case& c, const RaysOptions& options)
 {
     ThreadPool pool;
     const auto bvh =
@@ -157,7 +146,7 @@ std::vector<RaySet> sets_of(const Case& c, const Options& options)
 }
 
 // Filled in place: engines refer to the mesh.
-void prepare_case(Case& c, const Mesh& native, double diagonal, const Options& options)
+void prepare_case(Case& c, const Mesh& native, double diagonal, const RaysOptions& options)
 {
     c.mesh = native;
     if (diagonal > 0) {
@@ -189,7 +178,7 @@ void prepare_case(Case& c, const Mesh& native, double diagonal, const Options& o
                                     .sets = {}});
 }
 
-void trace_case(Case& c, const Options& options)
+void trace_case(Case& c, const RaysOptions& options)
 {
     const auto triangles = static_cast<double>(c.mesh.triangles.size());
     for (std::size_t e = 0; e < c.engines.size(); ++e) {
@@ -214,7 +203,9 @@ void write_json(const std::vector<RayReport>& reports, const std::string& path)
     if (!(file << text) || !file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
-void run(const Options& options)
+} // namespace
+
+void run_rays(const RaysOptions& options)
 {
     std::vector<Case> cases(options.diagonals.size());
     {
@@ -234,44 +225,6 @@ void run(const Options& options)
         reports.push_back(std::move(c.report));
     }
     if (!options.json.empty()) write_json(reports, options.json);
-}
-
-} // namespace
-
-void add_rays(CLI::App& app)
-{
-    CLI::App* const command =
-        app.add_subcommand("rays", "million rays a second on one mesh, build time and memory");
-    const auto options = std::make_shared<Options>();
-    command->add_option("--mesh", options->mesh, "mesh file");
-    command->add_option("--terrain", options->terrain, "instead of a file: a terrain of so many triangles")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
-    command->add_option("--view", options->view, "object: from outside; nave: within Sponza or the museum")
-        ->check(CLI::IsMember({"object", "nave"}))
-        ->capture_default_str();
-    command
-        ->add_option("--diagonal", options->diagonals, "sizes to scale the mesh to; 0: its own, as it came")
-        ->check(CLI::Range(0.0, 1e6))
-        ->delimiter(',')
-        ->capture_default_str();
-    command->add_option("--peer", options->peer, "engine to measure beside ours")
-        ->check(CLI::IsMember({"embree"}));
-    command->add_option("--split", options->split, "how our tree is built")
-        ->check(CLI::IsMember({"sah", "midpoint"}))
-        ->capture_default_str();
-    command->add_option("--threads", options->threads, "numbers of threads that build and trace: 1,2")
-        ->check(CLI::Range(1, 1024))
-        ->delimiter(',')
-        ->capture_default_str();
-    command->add_option("--repeats", options->repeats, "the median is told")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    command->add_option("--only", options->only, "ray sets to trace: primary, shadow, diffuse, ...")
-        ->delimiter(',');
-    command->add_flag("--kernels", options->every_kernel, "every kernel of ours, not only the best");
-    command->add_option("--json", options->json, "JSON into this file, - for stdout, instead of the table");
-    command->add_flag("--table", options->table, "the table as well as JSON");
-    command->callback([options] { run(*options); });
 }
 
 } // namespace bench

@@ -12,7 +12,6 @@
 #include <httplib.h>
 #include <nlohmann/json.hpp>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -241,8 +240,11 @@ void run_first_tile(const std::string& path, bool as_json)
                 figures["fdatasync_ms"].get<double>());
 }
 
-void run(bool as_json)
+} // namespace
+
+void run_service(const ServiceOptions& options)
 {
+    if (!options.first_tile.empty()) return run_first_tile(options.first_tile, options.as_json);
     const ChildService service({"--limit-queue-jobs", "1000000"});
     json figures;
     figures["idle_resident_mib"] = service.resident_mib();
@@ -258,7 +260,7 @@ void run(bool as_json)
     figures["submissions"] = measure_submissions(service, mesh, 64, 50);
     figures["resident_after_mib"] = service.resident_mib();
     figures["peak_mib"] = service.peak_mib();
-    if (as_json) {
+    if (options.as_json) {
         std::cout << figures.dump(2) << "\n";
         return;
     }
@@ -281,20 +283,6 @@ void run(bool as_json)
                 figures["idle_resident_mib"].get<double>(),
                 figures["resident_after_mib"].get<double>(),
                 figures["peak_mib"].get<double>());
-}
-
-} // namespace
-
-void add_service(CLI::App& app)
-{
-    CLI::App* const command =
-        app.add_subcommand("service", "what the service costs beyond the render itself");
-    const auto as_json = std::make_shared<bool>(false);
-    command->add_flag("--json", *as_json, "figures as JSON");
-    const auto mesh = std::make_shared<std::string>();
-    command->add_option("--first-tile", *mesh, "only: time to the first tile of this mesh")
-        ->check(CLI::ExistingFile);
-    command->callback([=] { mesh->empty() ? run(*as_json) : run_first_tile(*mesh, *as_json); });
 }
 
 } // namespace bench

@@ -11,7 +11,6 @@
 #include "tests/support/random_numbers.h"
 #include "tests/support/sky_march.h"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -24,11 +23,6 @@ namespace {
 using namespace renderer;
 
 constexpr std::size_t kWidth = 512, kHeight = 256;
-
-struct Options {
-    int repeats = 5;
-    int directions = 500;
-};
 
 struct Error {
     double lookup = 0, march = 0;
@@ -75,7 +69,7 @@ double march_upper_half(const Air& air, double elevation)
     return sum;
 }
 
-void measure(double elevation, const Options& options)
+void measure(double elevation, const SkyOptions& options)
 {
     AtmosphereDescription description = atmosphere_preset(AtmospherePreset::reference_s);
     description.scattering = SkyScattering::single;
@@ -116,33 +110,25 @@ void measure(double elevation, const Options& options)
 
 } // namespace
 
-void add_sky(CLI::App& app)
+void run_sky(const SkyOptions& options)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("sky", "a panorama of the sky: look-ups beside the plain march");
-    command->add_option("--repeats", options->repeats, "of each figure; medians are told")
-        ->check(CLI::Range(1, 1000));
-    command->add_option("--directions", options->directions, "for the errors")
-        ->check(CLI::Range(1, 1'000'000));
-    command->callback([options] {
-        std::printf("one processor, %zux%zu (the march: its upper half)\n"
-                    "%9s %10s %10s %10s %10s %10s %10s %10s %10s %12s %12s\n",
-                    kWidth,
-                    kHeight,
-                    "elevation",
-                    "march ms",
-                    "cold ms",
-                    "warm ms",
-                    "march ns",
-                    "cold ns",
-                    "warm ns",
-                    "warm",
-                    "cold",
-                    "rms",
-                    "march's rms");
-        for (const double elevation : {60.0, 30.0, 10.0, 2.0})
-            measure(elevation, *options);
-    });
+    std::printf("one processor, %zux%zu (the march: its upper half)\n"
+                "%9s %10s %10s %10s %10s %10s %10s %10s %10s %12s %12s\n",
+                kWidth,
+                kHeight,
+                "elevation",
+                "march ms",
+                "cold ms",
+                "warm ms",
+                "march ns",
+                "cold ns",
+                "warm ns",
+                "warm",
+                "cold",
+                "rms",
+                "march's rms");
+    for (const double elevation : {60.0, 30.0, 10.0, 2.0})
+        measure(elevation, options);
 }
 
 } // namespace bench

@@ -9,7 +9,6 @@
 #include "renderer/render.h"
 #include "tests/bench/commands.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -169,29 +168,21 @@ void measure(const char* name, RenderSettings settings, int repeats)
     std::fflush(stdout);
 }
 
-void run(int repeats)
+} // namespace
+
+void run_tiles(const TilesOptions& options)
 {
     RenderSettings everywhere;
     everywhere.image.width_px = everywhere.image.height_px = 256;
     everywhere.quality.samples = 64;
-    measure("work everywhere", everywhere, repeats);
+    measure("work everywhere", everywhere, options.repeats);
 
     // The crop is a single tile.
     RenderSettings one_tile = everywhere;
     one_tile.image.width_px = one_tile.image.height_px = 64;
     one_tile.image.region = PixelRect{24, 24, 16, 16};
     one_tile.quality.samples = 4096;
-    measure("one tile holds all the work", one_tile, repeats);
-}
-
-} // namespace
-
-void add_tiles(CLI::App& app)
-{
-    CLI::App* const command = app.add_subcommand("tiles", "parallel efficiency of the tile loop");
-    const auto repeats = std::make_shared<int>(7);
-    command->add_option("--repeats", *repeats, "pairs of renders")->capture_default_str();
-    command->callback([repeats] { run(*repeats); });
+    measure("one tile holds all the work", one_tile, options.repeats);
 }
 
 } // namespace bench

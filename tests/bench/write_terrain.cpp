@@ -2,7 +2,6 @@
 #include "tests/bench/commands.h"
 #include "tests/bench/terrain.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -190,19 +189,12 @@ std::uint64_t write_terrain(const std::filesystem::path& path, std::uint64_t tri
     return file.finish();
 }
 
-void add_terrain(CLI::App& app)
+void run_terrain(const TerrainOptions& options)
 {
-    CLI::App* const command = app.add_subcommand("terrain", "write a terrain as a mesh file");
-    const auto path = std::make_shared<std::string>();
-    const auto triangles = std::make_shared<std::uint64_t>(0);
-    command->add_option("file", *path, "FILE.ply, .obj, .stl or .glb")->required();
-    command->add_option("--triangles", *triangles, "exactly so many")->required();
-    command->callback([=] {
-        std::printf("%s: %llu triangles, %llu bytes\n",
-                    path->c_str(),
-                    static_cast<unsigned long long>(*triangles),
-                    static_cast<unsigned long long>(write_terrain(*path, *triangles)));
-    });
+    std::printf("%s: %llu triangles, %llu bytes\n",
+                options.path.c_str(),
+                static_cast<unsigned long long>(options.triangles),
+                static_cast<unsigned long long>(write_terrain(options.path, options.triangles)));
 }
 
 } // namespace bench
