@@ -2,6 +2,7 @@
 
 #include "clients/cli/digest.h"
 #include "clients/cli/mesh_files.h"
+#include "renderer/plan/mesh_use.h"
 
 #include <utility>
 
@@ -73,6 +74,9 @@ LocalJob load_local_job(const JobSource& source, api::JobRequest request)
             faults.push_back({fault.pointer, fault.code, fault.detail});
         refuse_faults(source.name, faults);
     }
+    const std::vector<renderer::MeshUse> uses = renderer::uses_of(job.assumed.description, job.facts);
+    for (std::size_t i = 0; i < uses.size(); ++i)
+        renderer::drop_unused(job.meshes[i], uses[i]);
     return job;
 }
 

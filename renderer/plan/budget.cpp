@@ -19,15 +19,13 @@ namespace {
 constexpr std::uint64_t kFilmBytesPerPixel = 24 + 12 + 3 + 3 + (3 + 12 + 12);
 // Sums and mean of a layer, and what is packed of it: see film/layer_sums.h.
 constexpr std::array<std::uint64_t, kLayers.size()> kLayerBytesPerPixel{16 + 8, 24 + 24, 24 + 24, 8};
-constexpr std::uint64_t kMeshBytesPerVertex = 12 + 12 + 8;
-constexpr std::uint64_t kMeshBytesPerTriangle = 12 + 2; // indices, material
 // 52 to 57 in meshes of many kinds, 65 where triangles are strewn points.
 constexpr std::uint64_t kTreeBytesPerTriangle = 56;
 // Items twice and the binary tree, less what is there in the end.
 constexpr std::uint64_t kBuildingBytesPerTriangle = 28;
 // The scene's own words, as they came, as they were read and with every default filled in; and how an object is shaded.
 constexpr std::uint64_t kBytesPerObject = kInstanceBytes + 90 + 2 * sizeof(ObjectDescription) + 96;
-constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle = 48;
+constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle = 48; // joined; in leaves
 // Three corners of their own, indices, and where it came from; residuals.
 constexpr std::uint64_t kJoinedBytesPerTriangle =
     3 * 12 + 12 + 32 + 3 * kResidualBytesPerVertex + kResidualBytesPerTriangle;
@@ -106,16 +104,15 @@ std::uint64_t tree_building_bytes(std::uint64_t triangles)
     return triangles * kBuildingBytesPerTriangle;
 }
 
-void add_mesh(Budget& budget, const MeshFacts& mesh)
+void add_mesh(Budget& budget, const MeshFacts& mesh, const MeshUse& use)
 {
+    const MeshUse kept = mesh.is_shared ? MeshUse{true, true, true} : use;
     budget.triangles += mesh.triangles;
-    budget.mesh_bytes += mesh.triangles * kMeshBytesPerTriangle + mesh.vertices * kMeshBytesPerVertex +
-                         tree_bytes(mesh.triangles);
+    budget.mesh_bytes += array_bytes(mesh, kept) + tree_bytes(mesh.triangles);
+    if (mesh.has_residuals) budget.mesh_bytes += mesh.triangles * kResidualBytesPerTriangle;
     budget.building_bytes = std::max(budget.building_bytes, tree_building_bytes(mesh.triangles));
-    budget.texture_bytes += mesh.image_bytes + mesh.image_bytes / 3;
-    if (mesh.has_residuals)
-        budget.mesh_bytes +=
-            mesh.triangles * kResidualBytesPerTriangle + mesh.vertices * kResidualBytesPerVertex;
+    if (kept.materials) budget.texture_bytes += mesh.image_bytes;
+    if (use.materials) budget.texture_bytes += mesh.image_bytes / 3; // the levels, which are made for a scene
 }
 
 namespace {
@@ -174,8 +171,9 @@ Budget predict(const SceneDescription& scene,
     for (const ObjectDescription& object : scene.objects)
         b.mesh_bytes += emitters_of(object, scene, meshes) * kEmitterBytes;
     b.building_bytes = std::max(scene.objects.size() * kInstanceBuildingBytes, tree_building_bytes(joined));
-    for (const MeshFacts& facts : meshes)
-        add_mesh(b, facts);
+    const std::vector<MeshUse> uses = uses_of(scene, meshes);
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        add_mesh(b, meshes[i], uses[i]);
     if (const auto* const sky =
             scene.environment ? std::get_if<ImageEnvironment>(&*scene.environment) : nullptr;
         sky != nullptr && sky->image < images.size())

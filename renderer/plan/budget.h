@@ -10,6 +10,7 @@
 #include "renderer/description/limits.h"
 #include "renderer/description/scene_description.h"
 #include "renderer/description/settings.h"
+#include "renderer/plan/mesh_use.h"
 #include "renderer/plan/plan.h"
 
 #include <cstdint>
@@ -43,8 +44,8 @@ Budget predict(const SceneDescription& scene,
                const RenderSettings& settings,
                std::span<const ImageFacts> images = {});
 
-// One mesh with its tree, without those of its parts.
-void add_mesh(Budget& budget, const MeshFacts& mesh);
+// One mesh with its tree, without those of its parts; of a shared one all, of another what the scene asks of it.
+void add_mesh(Budget& budget, const MeshFacts& mesh, const MeshUse& use);
 
 // One picture of the scene's, with its levels.
 void add_image(Budget& budget, const ImageFacts& image);

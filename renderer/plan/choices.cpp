@@ -3,6 +3,7 @@
 #include "renderer/description/textured_values.h"
 #include "renderer/plan/light_shapes.h"
 #include "renderer/plan/material_choices.h"
+#include "renderer/plan/mesh_use.h"
 
 #include <cstdio>
 #include <set>
@@ -23,6 +24,7 @@ struct Census {
     MaterialCensus materials;
     std::set<std::uint32_t> shown_meshes; // with materials of their own
     std::size_t shining = 0, emissive = 0, transparent = 0, metal = 0, rough = 0; // materials of shown_meshes
+    std::size_t idle_normals = 0, idle_uvs = 0, idle_materials = 0; // meshes that have them, and nothing asks
     std::size_t point = 0, spot = 0, directional = 0, sun = 0, area = 0;
     bool sky = false, sky_picture = false, sky_air = false;
 };
@@ -85,6 +87,12 @@ Census census_of(const SceneDescription& scene, std::span<const MeshFacts> meshe
     c.objects = scene.objects.size();
     for (const ObjectDescription& object : scene.objects)
         count_object(c, object, scene, meshes);
+    const std::vector<MeshUse> uses = uses_of(scene, meshes);
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        c.idle_normals += meshes[i].has_normals && !uses[i].normals;
+        c.idle_uvs += meshes[i].has_uvs && !uses[i].uvs;
+        c.idle_materials += meshes[i].has_materials && !uses[i].materials;
+    }
     for (const Light& light : scene.lights) {
         c.point += is_a<PointLight>(light);
         c.spot += is_a<SpotLight>(light);
@@ -184,6 +192,21 @@ private:
                "flat_shapes",
                of(c_.rectangles + c_.disks, "rectangle or disk object"));
         use_if(c_.spheres, "exact_spheres", of(c_.spheres, "sphere") + ", intersected as spheres");
+        idle_attributes();
+    }
+
+    void idle_attributes()
+    {
+        std::string idle;
+        const auto add = [&](std::size_t meshes, const char* what) {
+            if (meshes == 0) return;
+            idle += (idle.empty() ? "" : ", ") + std::string(what) + " of " +
+                    (meshes == 1 ? "1 mesh" : std::to_string(meshes) + " meshes");
+        };
+        add(c_.idle_normals, "normals");
+        add(c_.idle_uvs, "texture coordinates");
+        add(c_.idle_materials, "materials");
+        if (!idle.empty()) skip("mesh_attributes", "nothing asks for them: " + idle);
     }
 
     void trees()

@@ -34,6 +34,7 @@ struct MeshFacts {
     Bounds3d bounds;
     Vec3d origin{};             // of the frame that the mesh is kept in; zero: the file's
     bool has_residuals = false; // its corners are more than floats
+    bool is_shared = false;     // kept whole for other scenes, whatever this one asks of it: see mesh_use.h
     std::uint64_t triangles = 0;
     std::uint64_t vertices = 0;
     bool has_normals = false;

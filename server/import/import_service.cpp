@@ -62,6 +62,14 @@ ImportFailure out_of_memory()
             "there is not enough memory for this file now; try again, or simplify it"};
 }
 
+// What a cache holds is kept whole.
+std::shared_ptr<const renderer::MeshFacts> facts_of_shared(const renderer::Mesh& mesh)
+{
+    renderer::MeshFacts facts = renderer::facts_of(mesh);
+    facts.is_shared = true;
+    return std::make_shared<const renderer::MeshFacts>(std::move(facts));
+}
+
 ImportFailure not_a_mesh(const api::AssetInfo::ImageInfo& picture)
 {
     return {"not_a_mesh", "the file is a picture (" + picture.format + "), not a mesh"};
@@ -177,7 +185,7 @@ struct ImportService::State {
         auto known = stored->load(main_key(request), request.files, request.tree, pool);
         if (!known) return std::nullopt;
         const auto& mesh = known->prepared[static_cast<std::size_t>(request.tree)];
-        known->facts = std::make_shared<const renderer::MeshFacts>(renderer::facts_of(mesh_of(*mesh)));
+        known->facts = facts_of_shared(mesh_of(*mesh));
         PreparedAsset prepared{mesh, known->figures->notes, known->facts};
         remember(std::move(*known));
         return prepared;
@@ -250,9 +258,12 @@ try {
     auto* asset = std::get_if<ImportedAsset>(&imported);
     if (!asset) return PreparedAsset{};
     known.figures = mesh_figures(*asset);
-    known.facts = std::make_shared<const renderer::MeshFacts>(renderer::facts_of(asset->mesh));
-    PreparedAsset prepared{
-        prepare_mesh(std::move(asset->mesh), request.tree, pool, stop), known.figures->notes, known.facts};
+    known.facts = facts_of_shared(asset->mesh);
+    PreparedAsset prepared{nullptr, known.figures->notes, known.facts};
+    if (!request.may_build || request.may_build(*known.facts)) {
+        prepared.mesh = prepare_mesh(std::move(asset->mesh), request.tree, pool, stop);
+        if (!prepared.mesh) prepared = {}; // stopped
+    }
     known.prepared[tree] = prepared.mesh;
     if (state_->stored && prepared.mesh) state_->stored->keep(known, request.tree);
     state_->remember(std::move(known));

@@ -24,6 +24,7 @@
 #include "server/store/blob_store.h"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,8 +36,8 @@
 namespace server {
 
 struct PreparedAsset {
-    std::shared_ptr<const renderer::PreparedMesh> mesh;
-    std::vector<std::string> notes; // from the importer
+    std::shared_ptr<const renderer::PreparedMesh> mesh; // null: stopped, without facts; or not to be built
+    std::vector<std::string> notes;                     // from the importer
     std::shared_ptr<const renderer::MeshFacts> facts;
 };
 
@@ -46,6 +47,8 @@ struct ImportRequest {
     std::map<std::string, std::string> files; // the job's files, name -> digest: the only names that resolve
     renderer::MeshTree tree = renderer::MeshTree::wide_sah;
     bool is_picture = false; // is wanted; then files and tree do not count
+    // Asked before a tree is built; where it says no there is none. None: always.
+    std::function<bool(const renderer::MeshFacts&)> may_build = nullptr;
 };
 using ImportedPixels = std::shared_ptr<const renderer::Image>;
 
@@ -62,7 +65,7 @@ public:
     ImportService(const ImportService&) = delete;
     ImportService& operator=(const ImportService&) = delete;
 
-    // Cached or imported now. Nothing in the variant's first if `stop` was requested (mesh is null).
+    // Cached or imported now.
     std::variant<PreparedAsset, ImportFailure>
     import(const ImportRequest& request, renderer::ThreadPool& pool, const std::stop_token& stop);
     // The same of a picture, which is decoded; null if `stop` was requested.

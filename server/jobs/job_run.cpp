@@ -81,11 +81,24 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
     renderer::Budget budget = renderer::predict(scene, {}, run.request.settings);
     renderer::check_budget(budget, tools.limits, faults);
     if (!faults.empty()) return faults_problem(faults.take());
+    const std::vector<renderer::MeshUse> uses =
+        renderer::uses_of(scene, std::vector<renderer::MeshFacts>(scene.meshes.size()));
     for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
+        const auto with = [&](const renderer::MeshFacts& facts) {
+            renderer::Budget sum = budget;
+            renderer::add_mesh(sum, facts, uses[i]);
+            return sum;
+        };
         auto answer = tools.imports.import({.name = scene.meshes[i].name,
                                             .digest = scene.meshes[i].digest,
                                             .files = run.request.files,
-                                            .tree = renderer::mesh_tree(run.request.settings.acceleration)},
+                                            .tree = renderer::mesh_tree(run.request.settings.acceleration),
+                                            .may_build =
+                                                [&](const renderer::MeshFacts& facts) {
+                                                    renderer::FaultList excess;
+                                                    renderer::check_budget(with(facts), tools.limits, excess);
+                                                    return excess.empty();
+                                                }},
                                            tools.pool,
                                            run.stop);
         if (auto* failure = std::get_if<ImportFailure>(&answer)) {
@@ -93,11 +106,11 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
             continue;
         }
         auto& asset = std::get<PreparedAsset>(answer);
-        if (!asset.mesh) return StoppedRun{};
+        if (!asset.facts) return StoppedRun{};
         imported.facts.push_back(*asset.facts);
         imported.meshes.push_back(std::move(asset.mesh));
         add_notes(scene.meshes[i].name, asset.notes, imported);
-        renderer::add_mesh(budget, imported.facts.back());
+        budget = with(imported.facts.back());
         renderer::FaultList excess;
         renderer::check_budget(budget, tools.limits, excess);
         if (excess.empty()) continue;

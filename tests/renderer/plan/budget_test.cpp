@@ -112,11 +112,23 @@ TEST(Budget, GrowsByOneMeshAtATimeToThatOfAll)
     const std::vector<MeshFacts> meshes{nested(), nested()};
     Budget budget = predict(scene, {}, {});
     for (const MeshFacts& mesh : meshes)
-        add_mesh(budget, mesh);
+        add_mesh(budget, mesh, {true, true, true});
     const Budget all = predict(scene, meshes, {});
     EXPECT_EQ(budget.triangles, all.triangles);
     EXPECT_EQ(budget.mesh_bytes, all.mesh_bytes);
     EXPECT_EQ(budget.film_bytes, all.film_bytes);
+}
+
+TEST(Budget, CountsOfASharedMeshAllAndOfAnotherWhatIsAskedFor)
+{
+    SceneDescription scene = scene_of({""});
+    scene.objects[0].shading = renderer::Shading::flat;
+    MeshFacts facts = nested();
+    const std::uint64_t bare = predict(scene, std::vector{facts}, {}).mesh_bytes;
+    facts.has_normals = facts.has_uvs = true;
+    EXPECT_EQ(predict(scene, std::vector{facts}, {}).mesh_bytes, bare);
+    facts.is_shared = true;
+    EXPECT_EQ(predict(scene, std::vector{facts}, {}).mesh_bytes, bare + facts.vertices * 20);
 }
 
 TEST(Budget, CountsWhatTheLargestTreeTakesToBuildOnce)

@@ -286,7 +286,8 @@ TEST(MakePlan, ExplainsWhatItUsesAndWhatItLeavesOut)
                               "default_diffuse",
                               "spot_lights",
                               "hard_shadows"}));
-    EXPECT_THAT(names(other.models.skipped), UnorderedElementsAre("smooth_normals", "environment_light"));
+    EXPECT_THAT(names(other.models.skipped),
+                UnorderedElementsAre("mesh_attributes", "smooth_normals", "environment_light"));
 }
 
 TEST(MakePlan, TellsOfTwoLevelsOnlyWhereOneTreeStandsOverOthers)

@@ -53,6 +53,24 @@ TEST_F(ImportServiceTest, ImportsAMeshOnceWhateverItIsCalled)
     EXPECT_EQ(imports_.cached_bytes(), size_bytes(*std::get<PreparedAsset>(first).mesh));
 }
 
+TEST_F(ImportServiceTest, BuildsNoTreeThatIsNotWanted)
+{
+    ImportRequest request{"a.obj", put(kTriangle), {}};
+    std::uint64_t asked_about = 0;
+    request.may_build = [&](const renderer::MeshFacts& facts) {
+        asked_about = facts.triangles;
+        return false;
+    };
+    const auto refused = std::get<PreparedAsset>(imports_.import(request, pool_, {}));
+    EXPECT_EQ(asked_about, 1u);
+    EXPECT_EQ(refused.mesh, nullptr);
+    ASSERT_NE(refused.facts, nullptr);
+    EXPECT_TRUE(refused.facts->is_shared);
+    EXPECT_EQ(imports_.cached_bytes(), 0u);
+    request.may_build = nullptr;
+    EXPECT_EQ(code(request), "ok");
+}
+
 TEST_F(ImportServiceTest, ImportsAMeshOnceForAllWhoAskAtTheSameTime)
 {
     const std::string digest = put(kTriangle);
