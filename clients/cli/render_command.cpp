@@ -87,16 +87,16 @@ render_job(LocalJob& job, const renderer::Plan& plan, bool quiet, const std::sto
     return *std::move(result);
 }
 
-renderer::Picture
-picture_of(const renderer::RenderResult& result, const api::JobRequest& request, double exposure_ev)
+renderer::Picture picture_of(renderer::Film film, const api::JobRequest& request, double exposure_ev)
 {
-    renderer::Picture picture{.image = result.film.mean(),
-                              .layers = result.film.layers.mean(result.film.samples),
+    const std::uint32_t samples = film.samples;
+    renderer::FinishedFilm finished = finish(std::move(film));
+    renderer::Picture picture{.image = std::move(finished.image),
+                              .layers = std::move(finished.layers),
                               .exposure_ev = exposure_ev,
                               .tone = request.settings.image.tone,
                               .texts = {}};
-    for (auto& [keyword, text] :
-         api::provenance_of(request, render_key_of(request), result.report.accuracy.samples))
+    for (auto& [keyword, text] : api::provenance_of(request, render_key_of(request), samples))
         picture.texts.push_back({keyword, text});
     return picture;
 }
@@ -138,7 +138,7 @@ ExitCode render_command(const RenderOptions& options, const std::stop_token& sto
     const renderer::Plan plan = plan_of(job);
     renderer::RenderResult result = render_job(job, plan, options.quiet, stop);
     result.report.notes = job.notes;
-    const renderer::Picture picture = picture_of(result, job.request, plan.exposure_ev);
+    const renderer::Picture picture = picture_of(std::move(result.film), job.request, plan.exposure_ev);
     write_bytes(options.output, renderer::encode_picture(picture, encoding));
     for (const LayerFile& file : layers)
         for (const renderer::LayerImage& layer : picture.layers)

@@ -31,4 +31,12 @@ LinearImage Film::mean() const
     return image;
 }
 
+FinishedFilm finish(Film film)
+{
+    FinishedFilm finished{film.mean(), {}};
+    std::vector<RgbSum>().swap(film.sums);
+    finished.layers = film.layers.mean(film.samples);
+    return finished;
+}
+
 } // namespace renderer

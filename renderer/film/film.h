@@ -40,4 +40,12 @@ struct Film {
     LinearImage mean() const;         // black before the first sample
 };
 
+struct FinishedFilm {
+    LinearImage image;
+    std::vector<LayerImage> layers;
+};
+
+// The sums are given back as soon as they are divided: they are twice as large as what they become.
+FinishedFilm finish(Film film);
+
 } // namespace renderer

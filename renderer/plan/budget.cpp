@@ -7,6 +7,7 @@
 #include <array>
 #include <set>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <variant>
 #include <vector>
@@ -15,10 +16,13 @@ namespace renderer {
 
 namespace {
 
-// Sums and mean; the PNG and its copy; what is kept of both, in one piece, with what is packed of the mean.
-constexpr std::uint64_t kFilmBytesPerPixel = 24 + 12 + 3 + 3 + (3 + 12 + 12);
-// Sums and mean of a layer, and what is packed of it: see film/layer_sums.h.
-constexpr std::array<std::uint64_t, kLayers.size()> kLayerBytesPerPixel{16 + 8, 24 + 24, 24 + 24, 8};
+// Sums, and the mean that is made of them.
+constexpr std::uint64_t kSumBytes = 3 * sizeof(double), kMeanBytes = 12;
+// The same of each layer: see film/layer_sums.h.
+constexpr std::array<std::uint64_t, kLayers.size()> kLayerSumBytes{16, 24, 24, 0},
+    kLayerMeanBytes{4, 12, 12, 4};
+// What threads and libraries take besides, measured.
+constexpr std::uint64_t kRenderBytes = 1'300'000;
 // 52 to 57 in meshes of many kinds, 65 where triangles are strewn points.
 constexpr std::uint64_t kTreeBytesPerTriangle = 56;
 // Items twice and the binary tree, less what is there in the end.
@@ -30,12 +34,17 @@ constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle 
 constexpr std::uint64_t kJoinedBytesPerTriangle =
     3 * 12 + 12 + 32 + 3 * kResidualBytesPerVertex + kResidualBytesPerTriangle;
 
-std::uint64_t layer_bytes_per_pixel(LayerSet layers)
+// Sums are given back before the layers' means are made (film/film.h: finish), and what is encoded and kept of a picture afterwards
+// takes less than they did.
+std::uint64_t film_bytes_per_pixel(LayerSet layers)
 {
-    std::uint64_t bytes = 0;
-    for (const LayerEntry& entry : kLayers)
-        if (layers.has(entry.layer)) bytes += kLayerBytesPerPixel[static_cast<std::size_t>(entry.layer)];
-    return bytes;
+    std::uint64_t sums = 0, means = 0;
+    for (const LayerEntry& entry : kLayers) {
+        if (!layers.has(entry.layer)) continue;
+        sums += kLayerSumBytes[static_cast<std::size_t>(entry.layer)];
+        means += kLayerMeanBytes[static_cast<std::size_t>(entry.layer)];
+    }
+    return kMeanBytes + sums + std::max(kSumBytes, means);
 }
 
 // Of what shines: itself, where it is found again, its two nodes of the tree of lights, and what that is built from.
@@ -81,15 +90,21 @@ std::string refused(std::uint64_t value, const std::string& what, const char* li
 // Radiance and running sums: see lights/environment_map.h.
 constexpr std::uint64_t kEnvironmentBytesPerPixel = 12 + 4;
 
-// Tables of an air, a group of four wavelengths, and of the views from the eye.
-std::uint64_t sky_bytes(const AtmosphereDescription& a)
+// Tables of an air, a group of four wavelengths each, and of the views from the eye; and what the orders of scattering take
+// while they are added up, once for all groups. Measured, as all that mallocs leave behind: what a second group is made in
+// stays with the process.
+struct SkyBytes {
+    std::uint64_t kept, building;
+};
+SkyBytes sky_bytes(const AtmosphereDescription& a)
 {
     const std::uint64_t groups = (a.wavelengths_nm.size() + 3) / 4;
-    const std::uint64_t scattered = a.scattering == SkyScattering::single ? 0
-                                    : a.mode == SkyMode::exact            ? 81'000'000
-                                                                          : 16'000'000;
-    constexpr std::uint64_t kViews = 6'000'000, kPictureBytes = kEnvironmentBytesPerPixel * 512 * 256;
-    return groups * (scattered + kViews) + kPictureBytes;
+    if (a.scattering == SkyScattering::single) return {groups * 1'000'000, 0};
+    const bool is_exact = a.mode == SkyMode::exact;
+    const std::uint64_t tables = groups * (is_exact ? 4'000'000 : 3'000'000);
+    const std::uint64_t orders = is_exact ? 85'000'000 : 21'000'000;
+    if (groups < 2) return {tables, orders};
+    return {tables + orders, groups * (is_exact ? 14'000'000 : 4'000'000)};
 }
 
 } // namespace
@@ -133,14 +148,15 @@ std::vector<bool> are_on_surfaces(const SceneDescription& scene, std::size_t ima
     return found;
 }
 
-// Results of so few samples never fill the room that they may take.
-std::uint64_t merge_bytes(std::uint64_t pixels, const RenderSettings& settings)
+// Results wait for an older one, seldom more than render() has in hand at once: see kMergeBytes for the most.
+std::uint64_t merge_bytes(const RenderSettings& settings)
 {
-    constexpr std::uint64_t kSumBytes = 24, kSamplesAtOnce = 4; // three doubles
-    const QualitySettings& quality = settings.quality;
-    const std::uint64_t samples =
-        quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);
-    return std::min(kMergeBytes, pixels * kSumBytes * ((samples + kSamplesAtOnce - 1) / kSamplesAtOnce));
+    constexpr std::uint64_t kUnitsAThread = 4;
+    const AccelerationSettings& a = settings.acceleration;
+    const std::uint64_t threads =
+        a.threads != 0 ? a.threads : std::max(1u, std::thread::hardware_concurrency());
+    const std::uint64_t side = a.tile_px;
+    return std::min(kMergeBytes, threads * kUnitsAThread * side * side * kSumBytes);
 }
 
 } // namespace
@@ -163,8 +179,7 @@ Budget predict(const SceneDescription& scene,
     const ImageSettings& image = settings.image;
     b.pixels = image.region ? std::uint64_t{image.region->width} * image.region->height
                             : std::uint64_t{image.width_px} * image.height_px;
-    b.film_bytes = b.pixels * (kFilmBytesPerPixel + layer_bytes_per_pixel(image.layers)) +
-                   merge_bytes(b.pixels, settings);
+    b.film_bytes = b.pixels * film_bytes_per_pixel(image.layers) + merge_bytes(settings) + kRenderBytes;
     b.mesh_bytes = scene.objects.size() * kBytesPerObject + tree_bytes(triangles_of_parts(scene, meshes));
     const std::uint64_t joined = most_joined_triangles(scene, meshes);
     b.mesh_bytes += tree_bytes(joined) + joined * kJoinedBytesPerTriangle;
@@ -180,8 +195,11 @@ Budget predict(const SceneDescription& scene,
         b.texture_bytes +=
             std::uint64_t{images[sky->image].width} * images[sky->image].height * kEnvironmentBytesPerPixel;
     if (const auto* const air =
-            scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr)
-        b.texture_bytes += sky_bytes(*air);
+            scene.environment ? std::get_if<AtmosphereDescription>(&*scene.environment) : nullptr) {
+        const SkyBytes sky = sky_bytes(*air);
+        b.texture_bytes += sky.kept;
+        b.building_bytes = std::max(b.building_bytes, sky.building);
+    }
     const std::vector<bool> on_surfaces = are_on_surfaces(scene, images.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (on_surfaces[i])
@@ -225,7 +243,7 @@ void check_budget(const Budget& budget, const Limits& limits, FaultList& faults)
                     "over_limit",
                     refused(memory,
                             "bytes of memory (" + std::to_string(transient) +
-                                (film_is_most ? " for the picture, " : " to build trees, ") +
+                                (film_is_most ? " for the picture, " : " to build trees and tables, ") +
                                 std::to_string(budget.mesh_bytes) + " for meshes" +
                                 (budget.texture_bytes > 0
                                      ? ", " + std::to_string(budget.texture_bytes) + " for textures)"

@@ -136,10 +136,11 @@ double aspect_of(const renderer::ImageSettings& image)
 JobOutcome picture_of(const JobRun& run,
                       renderer::AssumedScene scene,
                       double exposure_ev,
-                      const renderer::RenderResult& rendered)
+                      renderer::RenderResult rendered)
 {
-    renderer::Picture picture{.image = rendered.film.mean(),
-                              .layers = rendered.film.layers.mean(rendered.film.samples),
+    renderer::FinishedFilm finished = finish(std::move(rendered.film));
+    renderer::Picture picture{.image = std::move(finished.image),
+                              .layers = std::move(finished.layers),
                               .exposure_ev = exposure_ev,
                               .tone = run.request.settings.image.tone,
                               .texts = {}};
@@ -218,7 +219,7 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     rendered->report.notes = imported.notes;
     const std::uint64_t non_finite = rendered->report.numerics.non_finite_samples;
     if (non_finite != 0 && fails_on(run.request, "non_finite")) return non_finite_problem(non_finite);
-    return picture_of(run, std::move(scene), plan.exposure_ev, *rendered);
+    return picture_of(run, std::move(scene), plan.exposure_ev, *std::move(rendered));
 }
 
 std::variant<renderer::PlanReport, api::ProblemDetails, StoppedRun> plan_job(const JobRun& run,

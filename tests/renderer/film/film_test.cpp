@@ -38,3 +38,21 @@ TEST(Film, LosesNothingOfManySamples)
     EXPECT_FLOAT_EQ(mean.g, 1000.1f);
     EXPECT_FLOAT_EQ(mean.b, 1e-3f);
 }
+
+TEST(Film, FinishedIsItsMeanAndThatOfItsLayers)
+{
+    renderer::LayerSet layers;
+    layers.add(renderer::Layer::depth);
+    renderer::Film film(renderer::PixelRect{0, 0, 2, 1}, layers);
+    film.samples = 2;
+    film.sums[1] += renderer::Rgb{1, 2, 3};
+    film.layers.add(1, 5, {0, 0, 1}, {});
+    const auto image = film.mean();
+    const auto means = film.layers.mean(2);
+    const renderer::FinishedFilm finished = finish(std::move(film));
+    EXPECT_EQ(finished.image.width_px, 2u);
+    EXPECT_EQ(finished.image.pixels, image.pixels);
+    ASSERT_EQ(finished.layers.size(), 1u);
+    EXPECT_EQ(finished.layers[0].values, means[0].values);
+    EXPECT_EQ(finished.layers[0].values[1], 5);
+}

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -183,15 +184,24 @@ TEST(Budget, CountsTheLayersThatAreAskedFor)
     RenderSettings settings;
     settings.image.width_px = settings.image.height_px = 100;
     const std::uint64_t without = predict(scene_of({}), {}, settings).film_bytes;
+    const auto with = [&](const renderer::LayerSet& layers) {
+        settings.image.layers = layers;
+        return predict(scene_of({}), {}, settings).film_bytes - without;
+    };
+    // Their sums; and their means where those are more than the picture's sums, which are gone by then.
+    const auto want = [](const renderer::LayerSet& layers) {
+        const std::uint64_t means = renderer::layer_image_bytes(layers), sums = sizeof(renderer::RgbSum);
+        return 100 * 100 * (renderer::layer_sum_bytes(layers) + std::max(means, sums) - sums);
+    };
+    renderer::LayerSet all;
     for (const renderer::LayerEntry& entry : renderer::kLayers) {
-        settings.image.layers = {};
-        settings.image.layers.add(entry.layer);
-        EXPECT_EQ(predict(scene_of({}), {}, settings).film_bytes - without,
-                  100 * 100 *
-                      (renderer::layer_sum_bytes(settings.image.layers) +
-                       2 * renderer::layer_image_bytes(settings.image.layers)))
-            << entry.name;
+        renderer::LayerSet one;
+        one.add(entry.layer);
+        all.add(entry.layer);
+        EXPECT_EQ(with(one), want(one)) << entry.name;
     }
+    EXPECT_EQ(with(all), want(all));
+    EXPECT_GT(want(all), 100u * 100 * renderer::layer_sum_bytes(all));
 }
 
 TEST(Budget, CountsWhatShinesOfMeshesAndShapes)
