@@ -101,7 +101,7 @@ SkyBytes sky_bytes(const AtmosphereDescription& a)
     const std::uint64_t groups = (a.wavelengths_nm.size() + 3) / 4;
     if (a.scattering == SkyScattering::single) return {groups * 1'000'000, 0};
     const bool is_exact = a.mode == SkyMode::exact;
-    const std::uint64_t tables = groups * (is_exact ? 4'000'000 : 3'000'000);
+    const std::uint64_t tables = groups * (is_exact ? 5'000'000 : 4'500'000);
     const std::uint64_t orders = is_exact ? 85'000'000 : 21'000'000;
     if (groups < 2) return {tables, orders};
     return {tables + orders, groups * (is_exact ? 14'000'000 : 4'000'000)};
