@@ -21,8 +21,6 @@ constexpr std::uint64_t kSumBytes = 3 * sizeof(double), kMeanBytes = 12;
 // The same of each layer: see film/layer_sums.h.
 constexpr std::array<std::uint64_t, kLayers.size()> kLayerSumBytes{16, 24, 24, 0},
     kLayerMeanBytes{4, 12, 12, 4};
-// What threads and libraries take besides, measured.
-constexpr std::uint64_t kRenderBytes = 1'300'000;
 // 52 to 57 in meshes of many kinds, 65 where triangles are strewn points.
 constexpr std::uint64_t kTreeBytesPerTriangle = 56;
 // Items twice and the binary tree, less what is there in the end.
@@ -179,7 +177,7 @@ Budget predict(const SceneDescription& scene,
     const ImageSettings& image = settings.image;
     b.pixels = image.region ? std::uint64_t{image.region->width} * image.region->height
                             : std::uint64_t{image.width_px} * image.height_px;
-    b.film_bytes = b.pixels * film_bytes_per_pixel(image.layers) + merge_bytes(settings) + kRenderBytes;
+    b.film_bytes = b.pixels * film_bytes_per_pixel(image.layers) + merge_bytes(settings);
     b.mesh_bytes = scene.objects.size() * kBytesPerObject + tree_bytes(triangles_of_parts(scene, meshes));
     const std::uint64_t joined = most_joined_triangles(scene, meshes);
     b.mesh_bytes += tree_bytes(joined) + joined * kJoinedBytesPerTriangle;
