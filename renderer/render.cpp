@@ -17,9 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// As many units may wait in the merge for each thread, or it would sleep while another one's takes long.
-constexpr std::size_t kUnitsAThread = 4;
-
 double seconds_since(Clock::time_point start)
 {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -176,7 +173,8 @@ private:
     std::size_t window() const
     {
         const std::size_t bytes = grid_.largest_tile_pixels() * bytes_a_pixel_;
-        return std::max(kUnitsAThread * pool_.size(), std::min(kMergeBytes / bytes, std::size_t{4096}));
+        return std::max<std::size_t>(kUnitsAThread * pool_.size(),
+                                     std::min(kMergeBytes / bytes, std::size_t{4096}));
     }
 
     RenderReport report(StopReason reason) const

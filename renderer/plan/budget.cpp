@@ -1,13 +1,13 @@
 #include "renderer/plan/budget.h"
 
 #include "renderer/description/textured_values.h"
+#include "renderer/parallel/thread_pool.h"
 #include "renderer/plan/joined_objects.h"
 
 #include <algorithm>
 #include <array>
 #include <set>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <variant>
 #include <vector>
@@ -147,17 +147,18 @@ std::vector<bool> are_on_surfaces(const SceneDescription& scene, std::size_t ima
 }
 
 // Results wait for an older one, seldom more than render() has in hand at once: see kMergeBytes for the most.
-std::uint64_t merge_bytes(const RenderSettings& settings)
+std::uint64_t merge_bytes(const AccelerationSettings& settings)
 {
-    constexpr std::uint64_t kUnitsAThread = 4;
-    const AccelerationSettings& a = settings.acceleration;
-    const std::uint64_t threads =
-        a.threads != 0 ? a.threads : std::max(1u, std::thread::hardware_concurrency());
-    const std::uint64_t side = a.tile_px;
-    return std::min(kMergeBytes, threads * kUnitsAThread * side * side * kSumBytes);
+    const std::uint64_t side = settings.tile_px;
+    return std::min(kMergeBytes, threads_of(settings) * kUnitsAThread * side * side * kSumBytes);
 }
 
 } // namespace
+
+unsigned threads_of(const AccelerationSettings& settings)
+{
+    return settings.threads != 0 ? settings.threads : usable_cores();
+}
 
 void add_image(Budget& budget, const ImageFacts& image)
 {
@@ -177,7 +178,7 @@ Budget predict(const SceneDescription& scene,
     const ImageSettings& image = settings.image;
     b.pixels = image.region ? std::uint64_t{image.region->width} * image.region->height
                             : std::uint64_t{image.width_px} * image.height_px;
-    b.film_bytes = b.pixels * film_bytes_per_pixel(image.layers) + merge_bytes(settings);
+    b.film_bytes = b.pixels * film_bytes_per_pixel(image.layers) + merge_bytes(settings.acceleration);
     b.mesh_bytes = scene.objects.size() * kBytesPerObject + tree_bytes(triangles_of_parts(scene, meshes));
     const std::uint64_t joined = most_joined_triangles(scene, meshes);
     b.mesh_bytes += tree_bytes(joined) + joined * kJoinedBytesPerTriangle;

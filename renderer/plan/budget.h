@@ -20,6 +20,11 @@ namespace renderer {
 
 // Results that wait to be merged in their order: render() keeps below this, whatever threads and tiles.
 inline constexpr std::uint64_t kMergeBytes = 32u << 20;
+// As many units may wait for each thread in any case, or it would sleep while another one's takes long.
+inline constexpr unsigned kUnitsAThread = 4;
+
+unsigned
+threads_of(const AccelerationSettings& settings); // that a render takes: as asked, or every usable core
 
 // A tree over so many triangles: its nodes and leaves, and what is held beside them at most while it is built.
 std::uint64_t tree_bytes(std::uint64_t triangles);

@@ -1,7 +1,6 @@
 #include "renderer/plan/predict_cost.h"
 
 #include <algorithm>
-#include <thread>
 
 namespace renderer {
 
@@ -56,8 +55,7 @@ Prediction predict_cost(const SceneDescription& scene,
     p.camera_rays = budget.pixels * samples;
     p.rays = static_cast<double>(p.camera_rays) * rays_a_sample(scene, transport);
     p.memory_bytes = memory_bytes(budget);
-    const std::uint32_t asked = settings.acceleration.threads;
-    p.threads = asked != 0 ? asked : std::max(1u, std::thread::hardware_concurrency());
+    p.threads = threads_of(settings.acceleration);
     p.seconds = p.rays * kSecondsARay / p.threads;
     if (quality.time_s && !quality.samples) p.seconds = std::min(p.seconds, *quality.time_s);
     p.seconds += table_seconds(scene, transport) / p.threads;
