@@ -6,7 +6,7 @@
 #define HELIOGRAPH_FOLLOW_FAN_INL
 #endif
 
-#include "renderer/accel/fan_block-inl.h"
+#include "renderer/accel/fan_leaf-inl.h"
 #include "renderer/accel/settle_fan-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,23 +19,13 @@ class FanSides {
 public:
     HWY_INLINE explicit FanSides(const RayFan& fan) : fan_(fan)
     {
-        const float infinity = std::numeric_limits<float>::infinity();
-        float least_x = infinity, least_y = infinity, most_x = -infinity, most_y = -infinity;
-        begin_ = infinity;
-        for (unsigned g = 0; g < fan.groups(); ++g) {
-            least_x = std::min(least_x, fan.least_x[g]);
-            least_y = std::min(least_y, fan.least_y[g]);
-            most_x = std::max(most_x, fan.most_x[g]);
-            most_y = std::max(most_y, fan.most_y[g]);
-            begin_ = std::min(begin_, fan.group_begin[g]);
-        }
         sign_ = fan.turned ? -1.0f : 1.0f;
         near_row_ = 2 * fan.z + (fan.turned ? 1 : 0);
         // Roundings of slopes, planes and of this test; lines beside the apex.
         const double size = max_abs(fan.apex) + static_cast<double>(fan.size);
         const double slack = size * 0x1p-20 + 4.0 * static_cast<double>(fan.aside);
         depth_shift_ = static_cast<float>(-fan.sign() * fan.apex.z - slack);
-        begin_ -= static_cast<float>(2 * slack);
+        begin_ = fan.all_begin - static_cast<float>(2 * slack);
         apex_x_ = static_cast<float>(fan.apex.x);
         apex_y_ = static_cast<float>(fan.apex.y);
         slack_ = static_cast<float>(slack);
@@ -48,10 +38,10 @@ public:
             s.slope = slope * sign_;
             s.at = static_cast<float>(at - static_cast<double>(s.slope) * fan.apex.z + by);
         };
-        set(0, 2 * fan.x, most_x, fan.apex.x, slack);
-        set(1, 2 * fan.x + 1, least_x, fan.apex.x, -slack);
-        set(2, 2 * fan.y, most_y, fan.apex.y, slack);
-        set(3, 2 * fan.y + 1, least_y, fan.apex.y, -slack);
+        set(0, 2 * fan.x, fan.all_most_x, fan.apex.x, slack);
+        set(1, 2 * fan.x + 1, fan.all_least_x, fan.apex.x, -slack);
+        set(2, 2 * fan.y, fan.all_most_y, fan.apex.y, slack);
+        set(3, 2 * fan.y + 1, fan.all_least_y, fan.apex.y, -slack);
     }
 
     HWY_INLINE float begin() const { return begin_; }
@@ -188,30 +178,24 @@ private:
     HWY_INLINE void visit_leaf(std::uint32_t code)
     {
         const std::uint32_t first = code & ChildCode::kNumber;
-        const std::uint32_t last = first + ((code & ChildCode::kTwoBlocks) != 0 ? 1 : 0);
+        FanLeaf seen;
+        LeafViewer(fan_, end_).see(mesh_.leaves + first, (code & ChildCode::kTwoBlocks) != 0 ? 2 : 1, seen);
         bool drawn = false;
-        for (std::uint32_t number = first; number <= last; ++number) {
-            const TriangleBlock& block = mesh_.leaves[number];
-            FanBlock seen;
-            see_block(fan_, block, seen);
-            for (unsigned lane = 0; lane < TriangleBlock::kLanes; ++lane) {
-                if (block.primitive[lane] == TriangleBlock::kNone) break;
-                const bool certain = (seen.faces >> lane & 1) != 0;
-                for (unsigned groups = groups_meeting(seen, lane, certain); groups != 0;
-                     groups &= groups - 1) {
-                    const auto group = static_cast<unsigned>(__builtin_ctz(groups));
-                    const std::uint32_t triangle = number * TriangleBlock::kLanes + lane;
-                    drawn =
-                        (certain ? test_group(seen, lane, group, triangle) : ask_group(group, triangle)) ||
-                        drawn;
-                }
+        for (unsigned left = seen.meeting; left != 0; left &= left - 1) {
+            const auto lane = static_cast<unsigned>(__builtin_ctz(left));
+            const std::uint32_t triangle = first * TriangleBlock::kLanes + lane;
+            const bool certain = (seen.faces >> lane & 1) != 0;
+            for (unsigned groups = groups_meeting(seen, lane, certain); groups != 0; groups &= groups - 1) {
+                const auto group = static_cast<unsigned>(__builtin_ctz(groups));
+                drawn =
+                    (certain ? test_group(seen, lane, group, triangle) : ask_group(group, triangle)) || drawn;
             }
         }
         if (drawn) end_ = farthest_end();
     }
 
     // Groups of which some ray may hit the triangle.
-    HWY_INLINE unsigned groups_meeting(const FanBlock& seen, unsigned lane, bool certain) const
+    HWY_INLINE unsigned groups_meeting(const FanLeaf& seen, unsigned lane, bool certain) const
     {
         const Group f;
         unsigned groups = 0;
@@ -222,10 +206,7 @@ private:
             corner_x[k] = seen.edge[k][0][lane] < 0 ? fan_.least_x : fan_.most_x;
             corner_y[k] = seen.edge[k][1][lane] < 0 ? fan_.least_y : fan_.most_y;
         }
-        const auto beyond =
-            hn::Set(f, seen.nearest[lane] - std::abs(seen.nearest[lane]) * 0x1p-21f - 4 * fan_.aside);
-        const auto behind =
-            hn::Set(f, seen.farthest[lane] + std::abs(seen.farthest[lane]) * 0x1p-21f + 4 * fan_.aside);
+        const auto beyond = hn::Set(f, seen.nearest[lane]), behind = hn::Set(f, seen.farthest[lane]);
         const auto error = hn::Set(f, -seen.edge_error[lane]);
         for (unsigned i = 0; i < RayFan::kGroups; i += kGroupLanes) {
             auto out = hn::Or(hn::Lt(hn::Load(f, fan_.group_end + i), beyond),
@@ -259,14 +240,14 @@ private:
     }
 
     // The triangle against the rays of a group. True where a ray's end was drawn in.
-    HWY_INLINE bool test_group(const FanBlock& seen, unsigned lane, unsigned group, std::uint32_t triangle)
+    HWY_INLINE bool test_group(const FanLeaf& seen, unsigned lane, unsigned group, std::uint32_t triangle)
     {
         const Group f;
         bool drawn = false;
         for (unsigned i = 0; i < RayFan::kGroup; i += kGroupLanes) {
             const unsigned ray = group * RayFan::kGroup + i;
             const auto sx = hn::Load(f, fan_.slope_x + ray), sy = hn::Load(f, fan_.slope_y + ray);
-            const auto along = [&](const float(&n)[3][FanBlock::kLanes]) HWY_ATTR {
+            const auto along = [&](const float(&n)[3][FanLeaf::kLanes]) HWY_ATTR {
                 return hn::MulAdd(hn::Set(f, n[0][lane]),
                                   sx,
                                   hn::MulAdd(hn::Set(f, n[1][lane]), sy, hn::Set(f, n[2][lane])));
@@ -296,7 +277,7 @@ private:
                     const auto none = hn::Set(f, -std::numeric_limits<float>::infinity());
                     hn::Store(hn::IfThenElse(hit, none, hn::Load(f, fan_.end + ray)), f, fan_.end + ray);
                 } else {
-                    found_.prefer(ray, hits, triangle);
+                    found_.prefer(ray, hn::And(hit, hn::Not(out)), hits, triangle);
                     hn::Store(hn::IfThenElse(hit, farthest, hn::Load(f, fan_.end + ray)), f, fan_.end + ray);
                     hn::Store(
                         hn::IfThenElse(hit, nearest, hn::Load(f, fan_.before + ray)), f, fan_.before + ray);

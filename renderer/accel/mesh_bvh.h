@@ -90,6 +90,7 @@ private:
     {
         return {bvh_.nodes.empty() ? nullptr : bvh_.nodes.data(),
                 leaves_.data(),
+                leaves_.size(),
                 residuals_.empty() ? nullptr : residuals_.data(),
                 bvh_.bounds,
                 scale_,

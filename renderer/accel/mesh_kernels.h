@@ -23,6 +23,7 @@ namespace renderer {
 struct MeshView {
     const WideNode* nodes = nullptr; // the root is first; none where there is nothing to hit
     const TriangleBlock* leaves = nullptr;
+    std::size_t blocks = 0;                     // of the leaves
     const CornerResiduals* residuals = nullptr; // one a block; none where floats hold the corners
     Bounds3f bounds;
     float scale = 1;

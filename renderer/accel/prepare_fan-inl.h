@@ -30,6 +30,10 @@ inline constexpr unsigned kLeavesOfFan = 48;
 // The same of rays from a camera, which part only where triangles are far smaller than what lies between them.
 inline constexpr unsigned kLeavesOfCameraFan = 256;
 
+// Of meshes, whose corners are gathered by their place in 31 bits.
+inline constexpr std::size_t kMostBlocks =
+    std::size_t{std::numeric_limits<std::int32_t>::max()} / (sizeof(TriangleBlock) / sizeof(float));
+
 class FanMaker {
 public:
     HWY_INLINE FanMaker(RayFan& fan, const MeshView& mesh, const Ray* rays, unsigned count)
@@ -43,7 +47,9 @@ public:
         any_hit_ = any_hit;
         const Ray& first = rays_[0];
         const bool outward = first.origin == rays_[1].origin;
-        if (mesh_.scale != 1 || mesh_.residuals != nullptr || (!outward && !any_hit)) return false;
+        if (mesh_.scale != 1 || mesh_.residuals != nullptr || mesh_.blocks > kMostBlocks ||
+            (!outward && !any_hit))
+            return false;
         apex_ = outward ? first.origin : first.origin + first.direction * first.t_max;
         if (!apex_is_near() || (!outward && !ends_near_apex(rays_[1]))) return false;
         name_axes(outward);
@@ -75,6 +81,11 @@ private:
         fan_.y = fan_.x == 2 ? 0 : fan_.x + 1;
         fan_.turned = (along[fan_.z] < 0) == outward;
         fan_.apex = {apex_[fan_.x], apex_[fan_.y], apex_[fan_.z]};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double at = k == 2 ? fan_.apex.z * fan_.sign() : fan_.apex[k];
+            fan_.apex_high[k] = static_cast<float>(at);
+            fan_.apex_low[k] = static_cast<float>(at - static_cast<double>(fan_.apex_high[k]));
+        }
         fan_.count = count_;
         fan_.most_leaves = count_ * (any_hit_ ? kLeavesOfFan : kLeavesOfCameraFan) / RayFan::kRays;
         fan_.size = std::max(max_abs(mesh_.bounds.lower), max_abs(mesh_.bounds.upper));
@@ -89,7 +100,8 @@ private:
         alignas(32) const double apex[4] = {apex_.x, apex_.y, apex_.z, 0};
         const unsigned lanes = fan_.groups() * RayFan::kGroup;
         for (unsigned i = 0; i < lanes; ++i) {
-            const double* const ray = &rays_[std::min(i, count_ - 1)].origin.x;
+            const Ray& given = rays_[std::min(i, count_ - 1)];
+            const double* const ray = &given.origin.x;
             for (std::size_t k = 0; k < 4; k += hn::MaxLanes(d)) {
                 hn::Store(hn::DemoteTo(f, hn::Sub(hn::LoadU(d, ray + k), hn::Load(d, apex + k))),
                           f,
@@ -157,6 +169,8 @@ private:
         fan_.aside = hn::GetLane(hn::MaxOfLanes(f, aside));
         fan_.reach = hn::GetLane(hn::MaxOfLanes(f, reach));
         if (!(fan_.aside <= fan_.reach * 0x1p-16f)) return false;
+        const float apex_size = static_cast<float>(max_abs(fan_.apex));
+        fan_.blur = 4 * fan_.aside + std::max(fan_.size, apex_size) * 0x1p-44f;
         bound_groups();
         return true;
     }
@@ -185,6 +199,11 @@ private:
             fan_.group_begin[g] = least(fan_.begin);
             fan_.group_end[g] = g < fan_.groups() ? most(fan_.end) : -std::numeric_limits<float>::infinity();
         }
+        fan_.all_least_x = *std::min_element(fan_.least_x, fan_.least_x + RayFan::kGroups);
+        fan_.all_most_x = *std::max_element(fan_.most_x, fan_.most_x + RayFan::kGroups);
+        fan_.all_least_y = *std::min_element(fan_.least_y, fan_.least_y + RayFan::kGroups);
+        fan_.all_most_y = *std::max_element(fan_.most_y, fan_.most_y + RayFan::kGroups);
+        fan_.all_begin = *std::min_element(fan_.group_begin, fan_.group_begin + RayFan::kGroups);
     }
 
     RayFan& fan_;

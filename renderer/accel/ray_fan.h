@@ -26,9 +26,11 @@ struct RayFan {
     bool turned = false;             // depths grow towards lower coordinates
     unsigned most_leaves = 0;        // that the rays visit together
     Vec3d apex;                      // x, y, z as named above, in the mesh's coordinates
+    float apex_high[3], apex_low[3]; // their sum is the apex, up to 2^-48 of it; z as depths grow
     float aside = 0;                 // how far the lines pass from the apex at most
     float reach = 0;                 // how far the rays' origins are from it
     float size = 0;                  // of the largest coordinate of the mesh's bounds
+    float blur = 0; // 4 * aside and what corners seen from the apex may be off by, for their size
 
     alignas(64) Lanes<float> slope_x, slope_y;
     alignas(64) Lanes<float> begin, end; // nothing can be hit before and behind; hits draw `end` in
@@ -38,6 +40,8 @@ struct RayFan {
     // The same of groups of rays, each bounded as a whole.
     alignas(32) float least_x[kGroups], most_x[kGroups], least_y[kGroups], most_y[kGroups];
     alignas(32) float group_begin[kGroups], group_end[kGroups];
+    // And of all of them.
+    float all_least_x, all_most_x, all_least_y, all_most_y, all_begin;
 
     unsigned groups() const { return (count + kGroup - 1) / kGroup; }
     double sign() const { return turned ? -1 : 1; }

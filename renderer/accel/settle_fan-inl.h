@@ -12,6 +12,9 @@
 #include "renderer/accel/prepare_fan-inl.h"
 #include "renderer/accel/triangle_lanes-inl.h"
 
+#include <array>
+#include <bit>
+
 HWY_BEFORE_NAMESPACE();
 namespace renderer::HWY_NAMESPACE {
 namespace {
@@ -23,22 +26,18 @@ public:
     HWY_INLINE FanFindings(const MeshView& mesh, RayFan& fan, const Ray* rays, MeshHit* best)
         : mesh_(mesh), fan_(fan), rays_(rays), best_(best)
     {
-        if (kAnyHit) return;
-        for (unsigned i = 0; i < fan.count; ++i) {
-            best[i].t = std::numeric_limits<double>::infinity();
-            best[i].primitive = TriangleBlock::kNone;
-        }
     }
 
     // Rays first, first + 1, ... as `lanes` says, hit for certain.
     HWY_INLINE void hit(unsigned first, unsigned lanes) { found_ |= std::uint64_t{lanes} << first; }
 
     // They hit this triangle, nearer than any other that is certain.
-    HWY_INLINE void prefer(unsigned first, unsigned lanes, std::uint32_t triangle)
+    HWY_INLINE void prefer(unsigned first, hn::Mask<Group> hits, unsigned lanes, std::uint32_t triangle)
     {
+        const hn::RebindToUnsigned<Group> u;
         preferring_ |= std::uint64_t{lanes} << first;
-        for (; lanes != 0; lanes &= lanes - 1)
-            preferred_[first + static_cast<unsigned>(__builtin_ctz(lanes))] = triangle;
+        std::uint32_t* const at = preferred_ + first;
+        hn::Store(hn::IfThenElse(hn::RebindMask(u, hits), hn::Set(u, triangle), hn::Load(u, at)), u, at);
     }
 
     // Float cannot tell whether they hit it, or whether before what they prefer. True where a ray's end was drawn
@@ -71,7 +70,11 @@ public:
     {
         if constexpr (!kAnyHit) settle_preferred();
         answer();
-        return found_ & rays_there();
+        found_ &= rays_there();
+        if constexpr (!kAnyHit)
+            for (std::uint64_t missed = rays_there() & ~found_; missed != 0; missed &= missed - 1)
+                best_[__builtin_ctzll(missed)] = kNothing;
+        return found_;
     }
 
 private:
@@ -87,21 +90,84 @@ private:
         std::uint32_t triangle;
     };
 
+    static constexpr MeshHit kNothing{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
+
     HWY_INLINE std::uint64_t rays_there() const { return ~std::uint64_t{0} >> (64 - fan_.count); }
 
     HWY_INLINE void settle_preferred()
     {
         preferring_ &= rays_there();
-        found_ |= preferring_;
-        Asked some[kTogether];
-        unsigned count = 0;
-        for (std::uint64_t left = preferring_; left != 0;) {
-            const auto ray = static_cast<unsigned>(__builtin_ctzll(left));
-            some[count++] = {ray, preferred_[ray]};
-            left &= left - 1;
-            if (count < kTogether && left != 0) continue;
-            test_some<true>(some, count);
-            count = 0;
+        for (unsigned first = 0; first < RayFan::kRays; first += kTogether)
+            if (const auto lanes = static_cast<unsigned>(preferring_ >> first) & ((1u << kTogether) - 1);
+                lanes != 0)
+                settle_some(first, lanes);
+    }
+
+    using Axes = std::array<std::size_t, 3>;
+    static constexpr std::uint32_t kBlockStride = sizeof(TriangleBlock) / sizeof(float);
+    static constexpr int kLaneBits = std::countr_zero(TriangleBlock::kLanes),
+                         kRayStride = sizeof(Ray) / sizeof(double);
+
+    // As WatertightRay names them; all rays of a fan alike.
+    HWY_INLINE Axes exact_axes(const Ray& ray) const
+    {
+        return ray.direction[fan_.z] < 0 ? Axes{fan_.y, fan_.x, fan_.z} : Axes{fan_.x, fan_.y, fan_.z};
+    }
+
+    HWY_INLINE void
+    gather_corners(hn::Vec<hn::RebindToUnsigned<F>> triangles, const Axes& axes, V (&out)[3][3]) const
+    {
+        const D d;
+        const F f;
+        const hn::RebindToUnsigned<F> u;
+        const auto block = hn::ShiftRight<kLaneBits>(triangles),
+                   lane = hn::And(triangles, hn::Set(u, TriangleBlock::kLanes - 1));
+        const auto at =
+            hn::BitCast(hn::RebindToSigned<F>(), hn::Add(hn::Mul(block, hn::Set(u, kBlockStride)), lane));
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                out[k][axis] = hn::PromoteTo(d, hn::GatherIndex(f, mesh_.leaves->corners[k][axes[axis]], at));
+    }
+
+    // Of rays first, first + 1, ... those of `lanes`, which float has said hit.
+    HWY_INLINE void settle_some(unsigned first, unsigned lanes)
+    {
+        const D d;
+        const hn::RebindToUnsigned<F> u;
+        const std::uint32_t* const preferred = preferred_ + first;
+        const std::uint32_t some = preferred[__builtin_ctz(lanes)];
+        const Axes axes = exact_axes(rays_[0]);
+        const auto triangles = hn::Load(u, preferred);
+        V corners[3][3];
+        if ((bits_of(u, hn::Ne(triangles, hn::Set(u, some))) & lanes) == 0) {
+            const TriangleBlock& block = mesh_.leaves[some / TriangleBlock::kLanes];
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    corners[k][axis] = hn::Set(
+                        d, static_cast<double>(block.corners[k][axes[axis]][some % TriangleBlock::kLanes]));
+        } else {
+            gather_corners(triangles, axes, corners);
+        }
+        V origin[3], direction[3];
+        const hn::RebindToSigned<D> i64;
+        const auto ray =
+            hn::Mul(hn::Min(hn::Iota(i64, first), hn::Set(i64, fan_.count - 1)), hn::Set(i64, kRayStride));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin[axis] = hn::Set(d, rays_[0].origin[axes[axis]]);
+            direction[axis] = hn::GatherIndex(d, &rays_->direction.x + axes[axis], ray);
+        }
+        const KernelUnits units(direction);
+        const TriangleLanes exact(
+            origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR { return corners[k][axis]; });
+        // Float's bounds hold for what double computes: the depth need not be compared with the ray's range once more.
+        Found found;
+        found.store(exact, units, exact.is_plain());
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const auto i = static_cast<unsigned>(__builtin_ctz(lanes));
+            if ((found.told >> i & 1) == 0)
+                answer_one({first + i, preferred[i]});
+            else if (improve(first + i, found.hit(i, mesh_, preferred[i])))
+                found_ |= std::uint64_t{1} << (first + i);
         }
     }
 
@@ -121,7 +187,7 @@ private:
     HWY_NOINLINE bool answer_one(const Asked& asked)
     {
         const auto [ray, triangle] = asked;
-        MeshHit hit{std::numeric_limits<double>::infinity(), TriangleBlock::kNone, {}};
+        MeshHit hit = kNothing;
         if (!decide(ray, triangle, hit)) return false;
         hit.t *= power_for(max_component(abs(rays_[ray].direction))) / static_cast<double>(mesh_.scale);
         return take(ray, hit);
@@ -131,7 +197,9 @@ private:
     {
         if constexpr (kAnyHit) return true;
         MeshHit& best = best_[ray];
-        if (!(hit.t < best.t || (hit.t == best.t && hit.primitive < best.primitive))) return false;
+        if ((found_ >> ray & 1) != 0 &&
+            !(hit.t < best.t || (hit.t == best.t && hit.primitive < best.primitive)))
+            return false;
         best = hit;
         return true;
     }
@@ -156,75 +224,90 @@ private:
     {
         bool drawn = false;
         for (unsigned i = 0; i < count_; i += kTogether)
-            drawn = test_some<false>(asked_ + i, std::min(kTogether, count_ - i)) || drawn;
+            drawn = test_some(asked_ + i, std::min(kTogether, count_ - i)) || drawn;
         count_ = 0;
         return drawn;
     }
 
-    // kCertain: float has said that they hit. True where a ray's end was drawn in.
-    template <bool kCertain>
-    HWY_INLINE bool test_some(const Asked* asked, unsigned count)
+    // What brings rays to a direction near 1 along the fan, the kernel's units, and t back. mesh.scale is 1, and powers
+    // of two have exact inverses.
+    struct KernelUnits {
+        V power, inverse;
+
+        HWY_INLINE explicit KernelUnits(V (&direction)[3])
+        {
+            const D d;
+            const hn::RebindToUnsigned<D> u;
+            const auto exponent =
+                hn::And(hn::BitCast(u, hn::Abs(direction[2])), hn::Set(u, std::uint64_t{0x7ff} << 52));
+            power = hn::BitCast(d, hn::Sub(hn::Set(u, std::uint64_t{0x7fe} << 52), exponent));
+            inverse = hn::BitCast(d, exponent);
+            for (V& component : direction)
+                component = hn::Mul(component, power);
+        }
+    };
+
+    // What lanes of rays found, each in a triangle of its own.
+    struct Found {
+        unsigned told; // bit i: ray i's answer is as computed; the others are left to the test of one ray
+        alignas(64) double t[kTogether], weights[3][kTogether];
+
+        // `plain`: where the weights need not be drawn onto the ray.
+        HWY_INLINE void store(const TriangleLanes& exact, const KernelUnits& units, hn::Mask<D> plain)
+        {
+            const D d;
+            told = bits_of(d, hn::And(plain, exact.runs_along_third())); // the axes are the fan's
+            hn::Store(hn::Mul(exact.t(), units.power), d, t);
+            for (std::size_t k = 0; k < 3; ++k)
+                hn::Store(exact.weight(k), d, weights[k]);
+        }
+        HWY_INLINE MeshHit hit(unsigned i, const MeshView& mesh, std::uint32_t triangle) const
+        {
+            const TriangleBlock& block = mesh.leaves[triangle / TriangleBlock::kLanes];
+            return {t[i],
+                    block.primitive[triangle % TriangleBlock::kLanes],
+                    {weights[0][i], weights[1][i], weights[2][i]}};
+        }
+    };
+
+    // True where a ray's end was drawn in.
+    HWY_INLINE bool test_some(Asked* asked, unsigned count)
     {
         const D d;
-        const F f;
-        std::size_t kx = fan_.x, ky = fan_.y;
-        if (rays_[asked[0].ray].direction[fan_.z] < 0) std::swap(kx, ky);
-        const std::size_t axes[3] = {kx, ky, fan_.z};
-        alignas(64) float corners[9][kTogether];
-        alignas(64) double origins[3][kTogether], directions[3][kTogether], from[kTogether], to[kTogether];
-        for (unsigned i = 0; i < kTogether; ++i) {
-            const auto [ray, triangle] = asked[i < count ? i : 0];
-            const TriangleBlock& block = mesh_.leaves[triangle / TriangleBlock::kLanes];
-            const unsigned lane = triangle % TriangleBlock::kLanes;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                for (std::size_t k = 0; k < 3; ++k)
-                    corners[3 * k + axis][i] = block.corners[k][axes[axis]][lane];
-                origins[axis][i] = rays_[ray].origin[axes[axis]];
-                directions[axis][i] = rays_[ray].direction[axes[axis]];
-            }
-            from[i] = rays_[ray].t_min;
-            to[i] = rays_[ray].t_max;
+        const hn::RebindToUnsigned<F> u;
+        for (unsigned i = count; i < kTogether; ++i)
+            asked[i] = asked[0];
+        hn::Vec<decltype(u)> ray_numbers, triangles;
+        hn::LoadInterleaved2(u, &asked->ray, ray_numbers, triangles);
+        const auto ray =
+            hn::Mul(hn::PromoteTo(hn::RebindToSigned<D>(), hn::BitCast(hn::RebindToSigned<F>(), ray_numbers)),
+                    hn::Set(hn::RebindToSigned<D>(), kRayStride));
+        const Axes axes = exact_axes(rays_[asked[0].ray]);
+        V origin[3], direction[3], corner[3][3];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin[axis] = hn::GatherIndex(d, &rays_->origin.x + axes[axis], ray);
+            direction[axis] = hn::GatherIndex(d, &rays_->direction.x + axes[axis], ray);
         }
-        const hn::RebindToUnsigned<D> du;
-        const V size = hn::Abs(hn::Load(d, directions[2]));
-        const auto exponent = hn::And(hn::BitCast(du, size), hn::Set(du, std::uint64_t{0x7ff} << 52));
-        // mesh.scale is 1, and powers of two have exact inverses.
-        const V power = hn::BitCast(d, hn::Sub(hn::Set(du, std::uint64_t{0x7fe} << 52), exponent));
-        const V inverse = hn::BitCast(d, exponent);
-        const V origin[3] = {hn::Load(d, origins[0]), hn::Load(d, origins[1]), hn::Load(d, origins[2])};
-        const V direction[3] = {hn::Mul(hn::Load(d, directions[0]), power),
-                                hn::Mul(hn::Load(d, directions[1]), power),
-                                hn::Mul(hn::Load(d, directions[2]), power)};
-        const TriangleLanes exact(origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR {
-            return hn::PromoteTo(d, hn::Load(f, corners[3 * k + axis]));
-        });
-        const V t = exact.t(), begin = hn::Mul(hn::Load(d, from), inverse);
-        auto within = hn::And(hn::Lt(begin, t), hn::Lt(t, hn::Mul(hn::Load(d, to), inverse)));
-        // Where the weights need not be drawn onto the ray, the axes are the fan's; the rest is as float said.
+        const V t_min = hn::GatherIndex(d, &rays_->t_min, ray),
+                t_max = hn::GatherIndex(d, &rays_->t_max, ray);
+        gather_corners(triangles, axes, corner);
+        const KernelUnits units(direction);
+        const TriangleLanes exact(
+            origin, direction, [&](std::size_t k, std::size_t axis) HWY_ATTR { return corner[k][axis]; });
+        const V t = exact.t(), begin = hn::Mul(t_min, units.inverse);
+        const V end = hn::Mul(t_max, units.inverse);
         const auto plain = exact.is_plain();
-        auto known = hn::And(plain, within);
-        if constexpr (!kCertain) {
-            within = hn::And(known, hn::Gt(exact.lower_bound_of_t(), begin));
-            known = hn::Or(plain, exact.beside());
-        }
-        const unsigned hits = bits_of(d, within);
-        const unsigned told = bits_of(d, hn::And(known, exact.runs_along_third()));
-        alignas(64) double out[4][kTogether];
-        hn::Store(hn::Mul(t, power), d, out[0]);
-        for (std::size_t k = 0; k < 3; ++k)
-            hn::Store(exact.weight(k), d, out[1 + k]);
+        const unsigned hits = bits_of(d,
+                                      hn::And(hn::And(plain, hn::And(hn::Lt(begin, t), hn::Lt(t, end))),
+                                              hn::Gt(exact.lower_bound_of_t(), begin)));
+        Found found;
+        found.store(exact, units, hn::Or(plain, exact.beside()));
         bool drawn = false;
         for (unsigned i = 0; i < count; ++i) {
-            const auto [ray, triangle] = asked[i];
-            if ((told >> i & 1) == 0) {
+            if ((found.told >> i & 1) == 0)
                 drawn = answer_one(asked[i]) || drawn;
-            } else if ((hits >> i & 1) != 0) {
-                const TriangleBlock& block = mesh_.leaves[triangle / TriangleBlock::kLanes];
-                const MeshHit hit{out[0][i],
-                                  block.primitive[triangle % TriangleBlock::kLanes],
-                                  {out[1][i], out[2][i], out[3][i]}};
-                drawn = (kCertain ? improve(ray, hit) : take(ray, hit)) || drawn; // certain ones are found
-            }
+            else if ((hits >> i & 1) != 0)
+                drawn = take(asked[i].ray, found.hit(i, mesh_, asked[i].triangle)) || drawn;
         }
         return drawn;
     }
@@ -235,7 +318,7 @@ private:
     MeshHit* best_;
     std::uint64_t found_ = 0, preferring_ = 0;
     unsigned count_ = 0;
-    std::uint32_t preferred_[RayFan::kRays];
+    alignas(64) std::uint32_t preferred_[RayFan::kRays] = {};
     Asked asked_[kMostAsked];
 };
 
