@@ -30,7 +30,8 @@ struct FanLeaf {
     alignas(32) float least_x[kLanes], most_x[kLanes], least_y[kLanes], most_y[kLanes];
 };
 
-// The triangles of one or two blocks.
+// The triangles of one or two blocks. kPrecise: planes and depths in double, for rays that start next to triangles.
+template <bool kPrecise>
 class LeafViewer {
 public:
     HWY_INLINE LeafViewer(const RayFan& fan, float end) : fan_(fan), end_(end) {}
@@ -162,14 +163,20 @@ private:
         if (meeting == 0) return;
         out.meeting |= meeting << lane;
         const auto store = [&](V value, float* to) HWY_ATTR { hn::Store(value, d, to + lane); };
-        alignas(32) float at_corners[3][3][kSeenAtOnce];
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::size_t k = 0; k < 3; ++k)
-                hn::Store(at[k][axis], d, at_corners[k][axis]);
-        store(farthest, out.farthest); // for the time being
-        store(longest, out.nearest);
-        see_planes(at_corners, lane, out);
-        const V flip = hn::Load(d, out.flip + lane);
+        V flip = hn::CopySign(hn::Zero(d), volume);
+        if constexpr (kPrecise) {
+            see_planes(at, farthest, longest, lane, out);
+            flip = hn::Load(d, out.flip + lane);
+        } else {
+            const V size = hn::Abs(volume), error = hn::MulAdd(size, set(0x1p-22f), volume_error);
+            out.faces |= bits_of(d, hn::Gt(size, error)) << lane;
+            store(hn::Sub(size, error), out.least_volume);
+            store(hn::Add(size, error), out.most_volume);
+            store(hn::MulAdd(size_of_whole, set(0x1p-20f), hn::MulAdd(longest_squared, set(0x1p-19f), tiny)),
+                  out.whole_error);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                store(hn::Xor(whole[axis], flip), out.whole[axis]);
+        }
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (std::size_t k = 0; k < 3; ++k)
                 store(hn::Xor(edge[k][axis], flip), out.edge[k][axis]);
@@ -179,13 +186,21 @@ private:
         bound_slopes(corner, depth_slack, lane, out);
     }
 
-    // Planes and depths in double: rays often start next to a triangle.
-    HWY_INLINE void see_planes(const float (&at)[3][3][kSeenAtOnce], unsigned lane, FanLeaf& out) const
+    // Planes and depths in double.
+    HWY_INLINE void
+    see_planes(const V (&corners)[3][3], V farthest_corner, V longest_edge, unsigned lane, FanLeaf& out) const
     {
         const hn::CappedTag<double, kSeenAtOnce> d;
         const hn::Rebind<float, decltype(d)> f;
         using W = hn::Vec<decltype(d)>;
         constexpr unsigned kLanes = hn::MaxLanes(d);
+        const D of_corners;
+        alignas(32) float at[3][3][kSeenAtOnce], farthest[kSeenAtOnce], longest_edges[kSeenAtOnce];
+        hn::Store(farthest_corner, of_corners, farthest);
+        hn::Store(longest_edge, of_corners, longest_edges);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::size_t k = 0; k < 3; ++k)
+                hn::Store(corners[k][axis], of_corners, at[k][axis]);
         const auto set = [&](double value) HWY_ATTR { return hn::Set(d, value); };
         const auto sizes = [&](const W(&v)[3]) HWY_ATTR {
             return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
@@ -208,9 +223,8 @@ private:
                 whole[0], corner[0], hn::MulAdd(whole[1], corner[1], hn::Mul(whole[2], corner[2])));
             const W flip = hn::CopySign(hn::Zero(d), volume), size = hn::Abs(volume),
                     size_of_whole = sizes(whole);
-            const W longest = hn::PromoteTo(d, hn::Load(f, out.nearest + lane + i));
-            const W reached =
-                hn::Add(hn::PromoteTo(d, hn::Load(f, out.farthest + lane + i)), set(fan_.reach));
+            const W longest = hn::PromoteTo(d, hn::Load(f, longest_edges + i));
+            const W reached = hn::Add(hn::PromoteTo(d, hn::Load(f, farthest + i)), set(fan_.reach));
             const W error =
                 hn::MulAdd(size,
                            set(0x1p-22),

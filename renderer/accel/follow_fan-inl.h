@@ -179,7 +179,8 @@ private:
     {
         const std::uint32_t first = code & ChildCode::kNumber;
         FanLeaf seen;
-        LeafViewer(fan_, end_).see(mesh_.leaves + first, (code & ChildCode::kTwoBlocks) != 0 ? 2 : 1, seen);
+        LeafViewer<kAnyHit>(fan_, end_)
+            .see(mesh_.leaves + first, (code & ChildCode::kTwoBlocks) != 0 ? 2 : 1, seen);
         bool drawn = false;
         for (unsigned left = seen.meeting; left != 0; left &= left - 1) {
             const auto lane = static_cast<unsigned>(__builtin_ctz(left));
@@ -264,12 +265,13 @@ private:
                                            hn::Lt(most, hn::Mul(hn::Load(f, fan_.begin + ray), least_det))));
             const unsigned rays = ~bits_of(f, out) & ((1u << kGroupLanes) - 1);
             if (rays == 0) continue;
-            // A hit for certain, and nearer than what is known: the bounds of its depth say so.
-            const auto nearest = hn::Mul(hn::Div(least, most_det), hn::Set(f, 1 - 0x1p-21f));
-            const auto farthest = hn::Mul(hn::Div(most, least_det), hn::Set(f, 1 + 0x1p-21f));
-            const auto hit = hn::And(hn::And(hn::Lt(error, inside), hn::Lt(hn::Zero(f), least_det)),
-                                     hn::And(hn::Lt(hn::Load(f, fan_.after + ray), nearest),
-                                             hn::Lt(farthest, hn::Load(f, fan_.before + ray))));
+            // A hit for certain, and nearer than what is known: the bounds of its depth, quotients of these, say so.
+            const auto less = hn::Mul(least, hn::Set(f, 1 - 0x1p-21f)),
+                       more = hn::Mul(most, hn::Set(f, 1 + 0x1p-21f));
+            const auto hit =
+                hn::And(hn::And(hn::Lt(error, inside), hn::Lt(hn::Zero(f), least_det)),
+                        hn::And(hn::Lt(hn::Mul(hn::Load(f, fan_.after + ray), most_det), less),
+                                hn::Lt(more, hn::Mul(hn::Load(f, fan_.before + ray), least_det))));
             const unsigned hits = bits_of(f, hit) & rays;
             if (hits != 0) {
                 if constexpr (kAnyHit) {
@@ -277,6 +279,8 @@ private:
                     const auto none = hn::Set(f, -std::numeric_limits<float>::infinity());
                     hn::Store(hn::IfThenElse(hit, none, hn::Load(f, fan_.end + ray)), f, fan_.end + ray);
                 } else {
+                    const auto nearest = hn::Mul(hn::Div(least, most_det), hn::Set(f, 1 - 0x1p-21f));
+                    const auto farthest = hn::Mul(hn::Div(most, least_det), hn::Set(f, 1 + 0x1p-21f));
                     found_.prefer(ray, hn::And(hit, hn::Not(out)), hits, triangle);
                     hn::Store(hn::IfThenElse(hit, farthest, hn::Load(f, fan_.end + ray)), f, fan_.end + ray);
                     hn::Store(

@@ -210,8 +210,9 @@ std::uint64_t closest_hits(const MeshView& mesh, const Ray* rays, unsigned count
 
 std::uint64_t any_hits(const MeshView& mesh, const Ray* rays, unsigned count)
 {
-    MeshHit hits[MeshKernels::kMostRays];
-    return trace<true>(mesh, rays, count, hits);
+    // Every way writes before it reads, and fans do not write at all.
+    alignas(MeshHit) std::byte hits[MeshKernels::kMostRays * sizeof(MeshHit)];
+    return trace<true>(mesh, rays, count, reinterpret_cast<MeshHit*>(hits));
 }
 
 } // namespace
