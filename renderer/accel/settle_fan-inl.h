@@ -150,11 +150,13 @@ private:
         }
         V origin[3], direction[3];
         const hn::RebindToSigned<D> i64;
-        const auto ray =
-            hn::Mul(hn::Min(hn::Iota(i64, first), hn::Set(i64, fan_.count - 1)), hn::Set(i64, kRayStride));
+        // Lanes without a ray take the last one.
+        const auto last = hn::Set(i64, fan_.count - 1 - first);
+        const auto ray = hn::Mul(hn::Min(hn::Iota(i64, 0), last), hn::Set(i64, kRayStride));
+        const Ray* const rays = rays_ + first;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            origin[axis] = hn::Set(d, rays_[0].origin[axes[axis]]);
-            direction[axis] = hn::GatherIndex(d, &rays_->direction.x + axes[axis], ray);
+            origin[axis] = hn::Set(d, (&rays->origin.x)[axes[axis]]);
+            direction[axis] = hn::GatherIndex(d, &rays->direction.x + axes[axis], ray);
         }
         const KernelUnits units(direction);
         const TriangleLanes exact(
