@@ -152,6 +152,7 @@ public:
                     // Shadow rays start at all depths: what all together meet is often met by none.
                     if (kAnyHit && (child.code & ChildCode::kLeaf) != 0 && !sides.some_group_enters(node, i))
                         continue;
+                    fetch(child.code);
                     unsigned at = waiting++;
                     for (; at > base && stack[at - 1].entry < child.entry; --at)
                         stack[at] = stack[at - 1];
@@ -166,6 +167,17 @@ public:
     }
 
 private:
+    // While others are looked at.
+    HWY_INLINE void fetch(std::uint32_t code) const
+    {
+        const bool leaf = (code & ChildCode::kLeaf) != 0;
+        const void* const at = leaf ? static_cast<const void*>(mesh_.leaves + (code & ChildCode::kNumber))
+                                    : static_cast<const void*>(mesh_.nodes + code);
+        const auto* const bytes = static_cast<const char*>(at);
+        for (int line = 0; line < 4; ++line)
+            __builtin_prefetch(bytes + line * 64);
+    }
+
     HWY_INLINE float farthest_end() const
     {
         const Group f;
