@@ -174,7 +174,7 @@ private:
         const void* const at = leaf ? static_cast<const void*>(mesh_.leaves + (code & ChildCode::kNumber))
                                     : static_cast<const void*>(mesh_.nodes + code);
         const auto* const bytes = static_cast<const char*>(at);
-        for (int line = 0; line < 4; ++line)
+        for (int line = 0; line < (leaf ? 5 : 4); ++line)
             __builtin_prefetch(bytes + line * 64);
     }
 
