@@ -89,7 +89,9 @@ private:
     // volume 4 * 6 L^2 A and 5 of |whole|_1 A. Evaluating one, the slopes (3 roundings), two products and sums make
     // less than 16 |n|_1, also where it is the corner of a group's bounds that is asked. The double test itself
     // computes in double from the rays' own origins, up to `reach` farther: 2^-47 (A + reach)^2 in an edge function.
-    // Lines that pass `aside` from the apex shift edge functions by less than 4 * aside * |edge|_1. What is below
+    // Lines that pass `aside` from the apex shift edge functions by less than 4 * aside * |edge|_1. Corners that are more
+    // than floats are off by up to 2^-24 of the coordinates' size: their own part is in `blur`, that of their edges is as
+    // if those were longer by twice the size; in a product of two edges the square of that is left over. What is below
     // float's range is less than 2^-110. Slopes of corners have five roundings, those of rays three.
     HWY_INLINE void see_lanes(const TriangleBlock* blocks, unsigned count, unsigned lane, FanLeaf& out) const
     {
@@ -120,11 +122,14 @@ private:
                 edge[k][axis] = cross(corner[k], along[k], axis);
             largest = hn::Max(largest, sum_of_sizes(edge[k]));
         }
-        const V size_of_whole = sum_of_sizes(whole), longest_squared = hn::Mul(longest, longest);
+        // As if they were longer where corners are more than the floats that are seen.
+        const V stretched = hn::Add(longest, set(fan_.rounded));
+        const V size_of_whole = sum_of_sizes(whole),
+                longest_squared = hn::Mul(stretched, hn::MulAdd(stretched, set(0x1p-21f), longest));
         const V reached = hn::Add(farthest, reach), squared = hn::Mul(reached, reached);
         const V edge_error =
             hn::MulAdd(set(0x1p-20f),
-                       hn::MulAdd(set(2.5f), hn::Mul(farthest, longest), largest),
+                       hn::MulAdd(set(2.5f), hn::Mul(farthest, stretched), largest),
                        hn::MulAdd(longest, set(4 * fan_.blur), hn::MulAdd(squared, set(0x1p-44f), tiny)));
         // The side that float sees, for a first sieve.
         const V volume = hn::MulAdd(
@@ -165,7 +170,7 @@ private:
         const auto store = [&](V value, float* to) HWY_ATTR { hn::Store(value, d, to + lane); };
         V flip = hn::CopySign(hn::Zero(d), volume);
         if constexpr (kPrecise) {
-            see_planes(at, farthest, longest, lane, out);
+            see_planes(at, farthest, longest, fan_.rounded > 0 ? longest_squared : hn::Zero(d), lane, out);
             flip = hn::Load(d, out.flip + lane);
         } else {
             const V size = hn::Abs(volume), error = hn::MulAdd(size, set(0x1p-22f), volume_error);
@@ -187,17 +192,23 @@ private:
     }
 
     // Planes and depths in double.
-    HWY_INLINE void
-    see_planes(const V (&corners)[3][3], V farthest_corner, V longest_edge, unsigned lane, FanLeaf& out) const
+    HWY_INLINE void see_planes(const V (&corners)[3][3],
+                               V farthest_corner,
+                               V longest_edge,
+                               V rounding,
+                               unsigned lane,
+                               FanLeaf& out) const
     {
         const hn::CappedTag<double, kSeenAtOnce> d;
         const hn::Rebind<float, decltype(d)> f;
         using W = hn::Vec<decltype(d)>;
         constexpr unsigned kLanes = hn::MaxLanes(d);
         const D of_corners;
-        alignas(32) float at[3][3][kSeenAtOnce], farthest[kSeenAtOnce], longest_edges[kSeenAtOnce];
+        alignas(32) float at[3][3][kSeenAtOnce], farthest[kSeenAtOnce], longest_edges[kSeenAtOnce],
+            roundings[kSeenAtOnce];
         hn::Store(farthest_corner, of_corners, farthest);
         hn::Store(longest_edge, of_corners, longest_edges);
+        hn::Store(rounding, of_corners, roundings);
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (std::size_t k = 0; k < 3; ++k)
                 hn::Store(corners[k][axis], of_corners, at[k][axis]);
@@ -225,19 +236,26 @@ private:
                     size_of_whole = sizes(whole);
             const W longest = hn::PromoteTo(d, hn::Load(f, longest_edges + i));
             const W reached = hn::Add(hn::PromoteTo(d, hn::Load(f, farthest + i)), set(fan_.reach));
-            const W error =
-                hn::MulAdd(size,
-                           set(0x1p-22),
-                           hn::MulAdd(size_of_whole,
-                                      set(fan_.blur),
-                                      hn::Mul(hn::Mul(longest, set(0x1p-40)), hn::Mul(reached, reached))));
+            const W rounding_of_corners = hn::PromoteTo(d, hn::Load(f, roundings + i));
+            const W error = hn::MulAdd(
+                size,
+                set(0x1p-22),
+                hn::MulAdd(size_of_whole,
+                           set(fan_.blur),
+                           hn::MulAdd(hn::Mul(rounding_of_corners, set(0x1.8p-20)),
+                                      reached,
+                                      hn::Mul(hn::Mul(longest, set(0x1p-40)), hn::Mul(reached, reached)))));
             out.faces |= bits_of(d, hn::Gt(size, error)) << (lane + i);
             const auto store = [&](W value, float* to)
                                    HWY_ATTR { hn::Store(hn::DemoteTo(f, value), f, to + lane + i); };
             store(flip, out.flip);
             store(hn::Sub(size, error), out.least_volume);
             store(hn::Add(size, error), out.most_volume);
-            store(hn::MulAdd(size_of_whole, set(0x1p-20), hn::Mul(hn::Mul(longest, longest), set(0x1p-46))),
+            store(hn::MulAdd(size_of_whole,
+                             set(0x1p-20),
+                             hn::MulAdd(rounding_of_corners,
+                                        set(0x1p-19),
+                                        hn::Mul(hn::Mul(longest, longest), set(0x1p-46)))),
                   out.whole_error);
             for (std::size_t axis = 0; axis < 3; ++axis)
                 store(hn::Xor(whole[axis], flip), out.whole[axis]);

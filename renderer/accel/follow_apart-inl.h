@@ -164,7 +164,7 @@ public:
             visit_nodes();
             visit_leaves();
         }
-        if (!kAnyHit) settle();
+        settle();
     }
 
 private:
@@ -259,10 +259,7 @@ private:
             if (found_[ray] == kCandidates) decide(ray);
             candidates_[ray][found_[ray]++] = {place, look.least[lane]};
         }
-        if (kAnyHit && found_[ray] != 0) {
-            decide(ray);
-            if (best_[ray].primitive != TriangleBlock::kNone) end_with_hit(ray);
-        }
+        if (kAnyHit && best_[ray].primitive != TriangleBlock::kNone) end_with_hit(ray);
     }
 
     HWY_INLINE void end_with_hit(unsigned ray)
@@ -282,7 +279,8 @@ private:
             run_.end[ray] = std::min(run_.end[ray], run_.end_for(best_[ray].t, ray));
     }
 
-    // The candidates that are left, of all rays.
+    // The candidates that are left, of all rays. Where any hit will do few of them are hits: most are what a shadow ray starts
+    // on, so that its ray had better go on than wait for a test alone.
     HWY_INLINE void settle()
     {
         LoneTests tests(mesh_, run_, rays_, best_);

@@ -47,9 +47,7 @@ public:
         any_hit_ = any_hit;
         const Ray& first = rays_[0];
         const bool outward = first.origin == rays_[1].origin;
-        if (mesh_.scale != 1 || mesh_.residuals != nullptr || mesh_.blocks > kMostBlocks ||
-            (!outward && !any_hit))
-            return false;
+        if (mesh_.scale != 1 || mesh_.blocks > kMostBlocks || (!outward && !any_hit)) return false;
         apex_ = outward ? first.origin : first.origin + first.direction * first.t_max;
         if (!apex_is_near() || (!outward && !ends_near_apex(rays_[1]))) return false;
         name_axes(outward);
@@ -171,6 +169,11 @@ private:
         if (!(fan_.aside <= fan_.reach * 0x1p-16f)) return false;
         const float apex_size = static_cast<float>(max_abs(fan_.apex));
         fan_.blur = 4 * fan_.aside + std::max(fan_.size, apex_size) * 0x1p-44f;
+        fan_.rounded = 0;
+        if (mesh_.residuals != nullptr) { // floats are within 2^-24 of the corners
+            fan_.rounded = 2 * fan_.size;
+            fan_.blur += fan_.size * 0x1p-22f;
+        }
         bound_groups();
         return true;
     }

@@ -30,7 +30,8 @@ struct RayFan {
     float aside = 0;                 // how far the lines pass from the apex at most
     float reach = 0;                 // how far the rays' origins are from it
     float size = 0;                  // of the largest coordinate of the mesh's bounds
-    float blur = 0; // 4 * aside and what corners seen from the apex may be off by, for their size
+    float blur = 0;    // 4 * aside and what corners seen from the apex may be off by, for their size
+    float rounded = 0; // twice the size where corners are more than floats, else 0
 
     alignas(64) Lanes<float> slope_x, slope_y;
     alignas(64) Lanes<float> begin, end; // nothing can be hit before and behind; hits draw `end` in

@@ -104,7 +104,6 @@ private:
     }
 
     using Axes = std::array<std::size_t, 3>;
-    static constexpr std::uint32_t kBlockStride = sizeof(TriangleBlock) / sizeof(float);
     static constexpr int kLaneBits = std::countr_zero(TriangleBlock::kLanes),
                          kRayStride = sizeof(Ray) / sizeof(double);
 
@@ -114,19 +113,44 @@ private:
         return ray.direction[fan_.z] < 0 ? Axes{fan_.y, fan_.x, fan_.z} : Axes{fan_.x, fan_.y, fan_.z};
     }
 
+    HWY_INLINE double corner(std::uint32_t triangle, std::size_t k, std::size_t axis) const
+    {
+        const std::uint32_t block = triangle / TriangleBlock::kLanes, lane = triangle % TriangleBlock::kLanes;
+        const auto in_float = static_cast<double>(mesh_.leaves[block].corners[k][axis][lane]);
+        return mesh_.residuals == nullptr
+                   ? in_float
+                   : in_float + static_cast<double>(mesh_.residuals[block].corners[k][axis][lane]);
+    }
+
     HWY_INLINE void
     gather_corners(hn::Vec<hn::RebindToUnsigned<F>> triangles, const Axes& axes, V (&out)[3][3]) const
+    {
+        gather<sizeof(TriangleBlock)>(triangles, mesh_.leaves->corners, axes, out);
+        if (mesh_.residuals == nullptr) return;
+        V lacking[3][3];
+        gather<sizeof(CornerResiduals)>(triangles, mesh_.residuals->corners, axes, lacking);
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                out[k][axis] = hn::Add(out[k][axis], lacking[k][axis]);
+    }
+
+    // From blocks of this many bytes.
+    template <std::size_t kBytes>
+    HWY_INLINE void gather(hn::Vec<hn::RebindToUnsigned<F>> triangles,
+                           const float (&corners)[3][3][TriangleBlock::kLanes],
+                           const Axes& axes,
+                           V (&out)[3][3]) const
     {
         const D d;
         const F f;
         const hn::RebindToUnsigned<F> u;
         const auto block = hn::ShiftRight<kLaneBits>(triangles),
                    lane = hn::And(triangles, hn::Set(u, TriangleBlock::kLanes - 1));
-        const auto at =
-            hn::BitCast(hn::RebindToSigned<F>(), hn::Add(hn::Mul(block, hn::Set(u, kBlockStride)), lane));
+        const auto at = hn::BitCast(hn::RebindToSigned<F>(),
+                                    hn::Add(hn::Mul(block, hn::Set(u, kBytes / sizeof(float))), lane));
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t axis = 0; axis < 3; ++axis)
-                out[k][axis] = hn::PromoteTo(d, hn::GatherIndex(f, mesh_.leaves->corners[k][axes[axis]], at));
+                out[k][axis] = hn::PromoteTo(d, hn::GatherIndex(f, corners[k][axes[axis]], at));
     }
 
     // Of rays first, first + 1, ... those of `lanes`, which float has said hit.
@@ -140,11 +164,9 @@ private:
         const auto triangles = hn::Load(u, preferred);
         V corners[3][3];
         if ((bits_of(u, hn::Ne(triangles, hn::Set(u, some))) & lanes) == 0) {
-            const TriangleBlock& block = mesh_.leaves[some / TriangleBlock::kLanes];
             for (std::size_t k = 0; k < 3; ++k)
                 for (std::size_t axis = 0; axis < 3; ++axis)
-                    corners[k][axis] = hn::Set(
-                        d, static_cast<double>(block.corners[k][axes[axis]][some % TriangleBlock::kLanes]));
+                    corners[k][axis] = hn::Set(d, corner(some, k, axes[axis]));
         } else {
             gather_corners(triangles, axes, corners);
         }
