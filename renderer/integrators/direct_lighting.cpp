@@ -53,10 +53,25 @@ void DirectLighting::add_delta(const LitPoint& point,
     add(point, i, {s.wi, s.distance * kShadowEnd, s.irradiance * static_cast<float>(1 / chance), 0});
 }
 
-void DirectLighting::add_emitter(
-    const LitPoint& point, std::size_t i, const Emitter& emitter, Sample2 u, double chance)
+void DirectLighting::add_emitter(std::span<const LitPoint> points,
+                                 const Emitter& emitter,
+                                 std::uint32_t number)
 {
-    const EmitterSample s = sample(emitter, point.surface->point.position, u);
+    Uninitialized<Vec3d, kMostSamples> at;
+    Uninitialized<Sample2, kMostSamples> u;
+    Uninitialized<EmitterSample, kMostSamples> drawn;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        at[i] = points[i].surface->point.position;
+        u[i] = points[i].of->two(dimension_of(points[i].scattering, ScatteringDimension::listed, number));
+    }
+    sample_many(emitter, at.first(points.size()), u.first(points.size()), drawn.first(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i)
+        add(points[i], i, emitter, drawn[i], 1);
+}
+
+void DirectLighting::add(
+    const LitPoint& point, std::size_t i, const Emitter& emitter, const EmitterSample& s, double chance)
+{
     if (s.distance > 0) add(point, i, {s.wi, s.distance * kShadowEnd, emitter.radiance, s.pdf * chance});
 }
 
@@ -68,11 +83,9 @@ void DirectLighting::add_picked(const LitPoint& point, std::size_t i)
     if (!(pick.probability > 0)) return;
     if (const PreparedLight* const light = scene_.picked_light(pick.light))
         return add_delta(point, i, *light, pick.probability);
-    add_emitter(point,
-                i,
-                scene_.emitters()[pick.light],
-                point.of->two(dimension_of(point.scattering, ScatteringDimension::picked)),
-                pick.probability);
+    const Emitter& emitter = scene_.emitters()[pick.light];
+    const Sample2 numbers = point.of->two(dimension_of(point.scattering, ScatteringDimension::picked));
+    add(point, i, emitter, sample(emitter, point.surface->point.position, numbers), pick.probability);
 }
 
 // One direction drawn by the material: as good as any for light that is the same from everywhere.
@@ -117,11 +130,9 @@ void DirectLighting::gather(std::span<const LitPoint> points, std::span<Rgb> add
     if (scene_.light_tree().empty()) {
         for (const Emitter& emitter : scene_.emitters()) {
             const std::uint32_t number = listed++ % kMostNumbers;
-            for_all([&](const LitPoint& point, std::size_t i) {
-                const Sample2 u =
-                    point.of->two(dimension_of(point.scattering, ScatteringDimension::listed, number));
-                add_emitter(point, i, emitter, u, 1);
-            });
+            if (stop_.stop_requested()) return;
+            add_emitter(points, emitter, number);
+            arrive(added);
         }
     } else {
         for_all([&](const LitPoint& point, std::size_t i) { add_picked(point, i); });

@@ -48,7 +48,9 @@ private:
     };
     void add(const LitPoint& point, std::size_t i, const Arrival& arrival);
     void arrive(std::span<Rgb> added);
-    void add_emitter(const LitPoint& point, std::size_t i, const Emitter& emitter, Sample2 u, double chance);
+    void
+    add(const LitPoint& point, std::size_t i, const Emitter& emitter, const EmitterSample& s, double chance);
+    void add_emitter(std::span<const LitPoint> points, const Emitter& emitter, std::uint32_t number);
     void add_delta(const LitPoint& point, std::size_t i, const PreparedLight& light, double chance);
     void add_picked(const LitPoint& point, std::size_t i);
     void add_environment_color(const LitPoint& point, std::size_t i);

@@ -1,6 +1,7 @@
 #include "renderer/lights/emitter.h"
 
 #include "renderer/color/strongest.h"
+#include "renderer/lights/rectangle_kernels.h"
 #include "renderer/lights/spherical_sampling.h"
 #include "renderer/math/transcendental.h"
 #include "renderer/sampling/warp.h"
@@ -95,14 +96,22 @@ EmitterSample sample_triangle(const Emitter& e, Vec3d point, Sample2 u)
     return at_by_area(point, e.corner + e.side_u * b0 + e.side_v * b1, e.normal, 1 / e.area);
 }
 
-SphericalRectangle rectangle_seen(const Emitter& e, Vec3d point)
+RectangleView as_rectangle(const Emitter& e)
 {
     const Vec3d across = cross(e.normal, e.side_w);
     const double height = dot(e.side_v, across);
-    return {e.corner - point,
-            {.x = e.side_w, .y = height < 0 ? -across : across, .z = e.normal}, // mirrored, or not
-            dot(e.side_u, e.side_w),
-            std::abs(height)};
+    return {.corner = e.corner,
+            .x = e.side_w,
+            .y = height < 0 ? -across : across, // mirrored, or not
+            .z = e.normal,
+            .width = dot(e.side_u, e.side_w),
+            .height = std::abs(height)};
+}
+
+SphericalRectangle rectangle_seen(const Emitter& e, Vec3d point)
+{
+    const RectangleView r = as_rectangle(e);
+    return {r.corner - point, {.x = r.x, .y = r.y, .z = r.z}, r.width, r.height};
 }
 
 EmitterSample sample_parallelogram(const Emitter& e, Vec3d point, Sample2 u)
@@ -297,6 +306,54 @@ EmitterSample sample(const Emitter& e, Vec3d point, Sample2 u)
         return sample_ellipsoid(e, point, u);
     }
     return {};
+}
+
+namespace {
+
+void sample_rectangle(const Emitter& e,
+                      std::span<const Vec3d> points,
+                      std::span<const Sample2> u,
+                      std::span<EmitterSample> out)
+{
+    RectangleRun run;
+    // Lanes behind the last point are drawn as well.
+    for (std::size_t i = 0; i < RectangleRun::kPoints && i < points.size() + RectangleRun::kMostLanes; ++i) {
+        const std::size_t at = std::min(i, points.size() - 1);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            run.point[axis][i] = points[at][axis];
+        run.u0[i] = static_cast<double>(u[at].u0);
+        run.u1[i] = static_cast<double>(u[at].u1);
+    }
+    draw_on_rectangle()(as_rectangle(e), run, points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double solid_angle = run.solid_angle[i], distance = run.distance[i];
+        if (!(solid_angle > kLeastSolidAngle) || !sees_it_shine(e, points[i]))
+            out[i] = sample(e, points[i], u[i]);
+        else if (distance > 0)
+            out[i] = {
+                {run.direction[0][i], run.direction[1][i], run.direction[2][i]}, distance, 1 / solid_angle};
+        else
+            out[i] = {};
+    }
+}
+
+} // namespace
+
+void sample_many(const Emitter& emitter,
+                 std::span<const Vec3d> points,
+                 std::span<const Sample2> u,
+                 std::span<EmitterSample> out)
+{
+    if (!emitter.is_rectangle) {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            out[i] = sample(emitter, points[i], u[i]);
+        return;
+    }
+    for (std::size_t first = 0; first < points.size(); first += RectangleRun::kPoints) {
+        const std::size_t count = std::min(RectangleRun::kPoints, points.size() - first);
+        sample_rectangle(
+            emitter, points.subspan(first, count), u.subspan(first, count), out.subspan(first, count));
+    }
 }
 
 double pdf(const Emitter& e, Vec3d point, Vec3d hit)

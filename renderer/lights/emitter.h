@@ -21,6 +21,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 namespace renderer {
 
@@ -54,6 +55,11 @@ struct EmitterSample {
     double pdf = 0;
 };
 EmitterSample sample(const Emitter& emitter, Vec3d point, Sample2 u);
+// The same for many points, to the bit: out[i] of points[i] and u[i]. Of rectangles several are drawn side by side.
+void sample_many(const Emitter& emitter,
+                 std::span<const Vec3d> points,
+                 std::span<const Sample2> u,
+                 std::span<EmitterSample> out);
 // Density of the direction in which a ray from `point` met the emitter at `hit`.
 double pdf(const Emitter& emitter, Vec3d point, Vec3d hit);
 

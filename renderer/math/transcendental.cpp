@@ -1,8 +1,11 @@
 #include "renderer/math/transcendental.h"
 
+#include "renderer/math/transcendental_constants.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -14,41 +17,30 @@ namespace {
 // functions' arithmetic.
 constexpr double kSign[2] = {1, -1};
 
-// Adding it rounds to a whole number, and leaves that in the low bits: 1.5 * 2^52.
-constexpr double kShift = 6755399441055744.0;
+using transcendental::kShift;
 
-// Taylor polynomials: on |x| <= pi/4 the first term left out is below 1e-20, so rounding is the only error.
+template <std::size_t N>
+double polynomial(double z, const double (&coefficients)[N])
+{
+    double p = coefficients[0];
+    for (std::size_t i = 1; i < N; ++i)
+        p = p * z + coefficients[i];
+    return p;
+}
+
 double sin_kernel(double x)
 {
     const double z = x * x;
-    double p = -1.0 / 121645100408832000.0; // -1/19!
-    p = p * z + 1.0 / 355687428096000.0;    // 1/17!
-    p = p * z - 1.0 / 1307674368000.0;
-    p = p * z + 1.0 / 6227020800.0;
-    p = p * z - 1.0 / 39916800.0;
-    p = p * z + 1.0 / 362880.0;
-    p = p * z - 1.0 / 5040.0;
-    p = p * z + 1.0 / 120.0;
-    p = p * z - 1.0 / 6.0;
-    return x + x * (z * p);
+    return x + x * (z * polynomial(z, transcendental::kSine));
 }
 
 double cos_kernel(double x)
 {
     const double z = x * x;
-    double p = 1.0 / 2432902008176640000.0; // 1/20!
-    p = p * z - 1.0 / 6402373705728000.0;   // -1/18!
-    p = p * z + 1.0 / 20922789888000.0;
-    p = p * z - 1.0 / 87178291200.0;
-    p = p * z + 1.0 / 479001600.0;
-    p = p * z - 1.0 / 3628800.0;
-    p = p * z + 1.0 / 40320.0;
-    p = p * z - 1.0 / 720.0;
-    p = p * z + 1.0 / 24.0;
     // 1 - z/2 first, with what its rounding lost, so that the sum is right to an ulp near 1/sqrt(2).
     const double half = 0.5 * z;
     const double w = 1 - half;
-    return w + (((1 - w) - half) + z * z * p);
+    return w + (((1 - w) - half) + z * z * polynomial(z, transcendental::kCosine));
 }
 
 // sin and cos of (x + low) turned by `quarters` right angles.
@@ -83,15 +75,13 @@ std::pair<double, double> sin_cos_deg(double degrees)
 
 std::pair<double, double> sin_cos(double radians)
 {
-    // pi/2 in three parts of at most 33 bits: their products with a quarter count below 2^20 are exact.
-    // Source: Cody, Waite, "Software Manual for the Elementary Functions", 1980, ch. 8.
-    constexpr double kFirst = 0x1.921fb544p+0, kSecond = 0x1.0b4611a6p-34, kThird = 0x1.3198a2e037073p-69;
+    constexpr const auto& kParts = transcendental::kQuarterTurn;
     const double shifted = radians * (2 / kPi) + kShift, quarters = shifted - kShift;
-    const double first = radians - quarters * kFirst;
-    const double second = quarters * kSecond;
+    const double first = radians - quarters * kParts[0];
+    const double second = quarters * kParts[1];
     const double y = first - second;
     const double lost = (first - y) - second;
-    const double tail = lost - quarters * kThird;
+    const double tail = lost - quarters * kParts[2];
     const double x = y + tail;
     return turned(x, (y - x) + tail, static_cast<int>(std::bit_cast<std::uint64_t>(shifted) & 3));
 }
@@ -186,26 +176,11 @@ namespace {
 // atan of x in [0, 1]: from the nearest multiple of 1/8, by the series of the angle between.
 double atan_unit(double x)
 {
-    constexpr double kAtanOfEighths[9] = {0,
-                                          0.1243549945467614350313548,
-                                          0.2449786631268641541720825,
-                                          0.3587706702705722203959201,
-                                          0.4636476090008061162142562,
-                                          0.5585993153435624359715082,
-                                          0.6435011087932843868028092,
-                                          0.7188299996216245054170142,
-                                          0.7853981633974483096156608};
     const double nearest = (x * 8 + kShift) - kShift;
     const double c = nearest / 8;
-    const double t = (x - c) / (1 + x * c), z = t * t; // |t| <= 1/16: t^17 / 17 is below 1e-21
-    double p = -1.0 / 15;
-    p = p * z + 1.0 / 13;
-    p = p * z - 1.0 / 11;
-    p = p * z + 1.0 / 9;
-    p = p * z - 1.0 / 7;
-    p = p * z + 1.0 / 5;
-    p = p * z - 1.0 / 3;
-    return kAtanOfEighths[static_cast<int>(nearest)] + (t + t * (z * p));
+    const double t = (x - c) / (1 + x * c), z = t * t; // |t| <= 1/16
+    return transcendental::kArcOfEighths[static_cast<int>(nearest)] +
+           (t + t * (z * polynomial(z, transcendental::kArc)));
 }
 
 } // namespace

@@ -255,12 +255,13 @@ TEST_P(EveryMeshKernel, FollowsRaysAmongCornersThatAreMoreThanFloats)
         const MeshBvh bvh = build(mesh);
         for (int i = 0; i < 200 / kThinning; ++i) {
             expect_as_brute_force(bvh, beam(random, mesh, kRun));
-            expect_as_brute_force(bvh, camera_fan(random, mesh, kRun));
-            expect_as_brute_force(bvh, light_fan(random, mesh, kRun));
             std::vector<Ray> rays;
             while (rays.size() < 1 + random.below(kRun))
                 rays.push_back(random_ray(random, mesh));
             expect_as_brute_force(bvh, rays);
+            if (i % 4 != 0) continue;
+            expect_as_brute_force(bvh, camera_fan(random, mesh, kRun));
+            expect_as_brute_force(bvh, light_fan(random, mesh, kRun));
         }
     }
     EXPECT_GT(hits_, rays_ / 5);
