@@ -4,6 +4,7 @@
 #include "renderer/integrators/direct_lighting.h"
 #include "renderer/integrators/surface_step.h"
 #include "renderer/math/uninitialized.h"
+#include "renderer/sampling/hemisphere_kernels.h"
 
 #include <algorithm>
 #include <limits>
@@ -172,12 +173,33 @@ private:
     // The next ray of each path that goes on; the others leave the run.
     void go_on()
     {
+        std::size_t diffuse = 0;
+        for (std::size_t i = 0; i < turns_; ++i)
+            if (is_diffuse(turn_[i])) numbers_[diffuse++] = direction_numbers(*turn_[i].path);
+        draw_in_hemisphere()(numbers_.first(diffuse), drawn_.first(diffuse));
+        diffuse = 0;
         std::size_t kept = 0;
         for (std::size_t i = 0; i < turns_; ++i) {
             Turn& turn = turn_[i];
-            if (turn.passes ? pass(turn) : scatter(turn)) alive_[kept++] = turn.path;
+            const bool goes_on = turn.passes ? pass(turn)
+                                 : is_diffuse(turn)
+                                     ? scatter(turn, diffuse_sample(*turn.surface.bsdf, drawn_[diffuse++]))
+                                     : scatter(turn, draw(turn));
+            if (goes_on) alive_[kept++] = turn.path;
         }
         count_ = kept;
+    }
+
+    static bool is_diffuse(const Turn& turn) { return turn.surface.bsdf->kind == BsdfKind::diffuse; }
+    static Sample2 direction_numbers(const Path& path)
+    {
+        return path.of->two(dimension_of(path.depth, ScatteringDimension::direction));
+    }
+    static BsdfSample draw(const Turn& turn)
+    {
+        const Path& path = *turn.path;
+        const float u_lobe = path.of->one(dimension_of(path.depth, ScatteringDimension::lobe));
+        return sample(*turn.surface.bsdf, turn.wo, u_lobe, direction_numbers(path));
     }
 
     bool pass(Turn& turn)
@@ -188,13 +210,10 @@ private:
         return true;
     }
 
-    bool scatter(Turn& turn)
+    bool scatter(Turn& turn, const BsdfSample& drawn)
     {
         Path& path = *turn.path;
         const Bsdf& bsdf = *turn.surface.bsdf;
-        const float u_lobe = path.of->one(dimension_of(path.depth, ScatteringDimension::lobe));
-        const Sample2 u = path.of->two(dimension_of(path.depth, ScatteringDimension::direction));
-        const BsdfSample drawn = sample(bsdf, turn.wo, u_lobe, u);
         if (!(drawn.pdf > 0) || is_black(drawn.weight)) return false;
         Vec3d way;
         if (drawn.is_delta) {
@@ -245,6 +264,8 @@ private:
     Uninitialized<LitPoint, kMostSamples> points_;
     Path* of_point_[kMostSamples];
     Uninitialized<Rgb, kMostSamples> added_;
+    Uninitialized<Sample2, kMostSamples> numbers_; // of turns at diffuse surfaces, to draw directions with
+    Uninitialized<Vec3f, kMostSamples> drawn_;
 };
 
 } // namespace

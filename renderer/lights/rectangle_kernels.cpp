@@ -1,6 +1,5 @@
 #include "renderer/lights/rectangle_kernels.h"
 
-#include <cstdint>
 #include <vector>
 
 // This file is compiled once for every target of Highway; what is above, for the baseline alone.
@@ -118,7 +117,7 @@ void draw_all(const RectangleView& rectangle, RectangleRun& run, std::size_t cou
 
 } // namespace
 
-DrawOnRectangle drawing()
+DrawOnRectangle rectangle_drawing()
 {
     return draw_all;
 }
@@ -127,35 +126,19 @@ DrawOnRectangle drawing()
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "renderer/math/kernel_targets.h"
+
 namespace renderer {
-
-namespace {
-
-std::vector<DrawOnRectangle> find_drawing()
-{
-    struct Compiled {
-        std::int64_t target;
-        DrawOnRectangle (*drawing)(); // none: not for this architecture
-    };
-    const Compiled compiled[]{{HWY_AVX3, HWY_CHOOSE_AVX3(drawing)},
-                              {HWY_AVX2, HWY_CHOOSE_AVX2(drawing)},
-                              {HWY_SSE4, HWY_CHOOSE_SSE4(drawing)},
-                              {HWY_NEON, HWY_CHOOSE_NEON(drawing)}};
-    std::vector<DrawOnRectangle> found;
-    for (const Compiled& c : compiled)
-        if (c.drawing != nullptr && (hwy::SupportedTargets() & c.target) != 0) found.push_back(c.drawing());
-    if (const DrawOnRectangle portable = (HWY_CHOOSE_FALLBACK(drawing))();
-        found.empty() || found.back() != portable)
-        found.push_back(portable);
-    return found;
-}
-
-} // namespace
 
 std::span<const DrawOnRectangle> all_draw_on_rectangle()
 {
-    static const std::vector<DrawOnRectangle> found = find_drawing();
-    return found;
+    static const std::vector<DrawOnRectangle> usable =
+        usable_kernels<DrawOnRectangle>({{HWY_AVX3, HWY_CHOOSE_AVX3(rectangle_drawing)},
+                                         {HWY_AVX2, HWY_CHOOSE_AVX2(rectangle_drawing)},
+                                         {HWY_SSE4, HWY_CHOOSE_SSE4(rectangle_drawing)},
+                                         {HWY_NEON, HWY_CHOOSE_NEON(rectangle_drawing)}},
+                                        (HWY_CHOOSE_FALLBACK(rectangle_drawing))());
+    return usable;
 }
 
 DrawOnRectangle draw_on_rectangle()

@@ -167,15 +167,18 @@ BsdfValue evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
     return {};
 }
 
+BsdfSample diffuse_sample(const Bsdf& bsdf, Vec3f drawn)
+{
+    // The cosine cancels: the weight is the colour, to the bit.
+    if (!(drawn.z > 0)) return {};
+    return {drawn, bsdf.diffuse, pdf_cosine_hemisphere(drawn.z)};
+}
+
 BsdfSample sample(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u)
 {
     switch (bsdf.kind) {
-    case BsdfKind::diffuse: {
-        const Vec3f wi = sample_cosine_hemisphere(u);
-        // The cosine cancels: the weight is the colour, to the bit.
-        if (!(wi.z > 0)) return {};
-        return {wi, bsdf.diffuse, pdf_cosine_hemisphere(wi.z)};
-    }
+    case BsdfKind::diffuse:
+        return diffuse_sample(bsdf, sample_cosine_hemisphere(u));
     case BsdfKind::phong_classic:
     case BsdfKind::phong_normalized:
         return weighed(bsdf, wo, sample_phong(bsdf, wo, u_lobe, u));

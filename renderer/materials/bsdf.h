@@ -88,6 +88,8 @@ struct BsdfValue {
 BsdfValue evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi);
 // u_lobe chooses what to draw from, u where.
 BsdfSample sample(const Bsdf& bsdf, Vec3f wo, float u_lobe, Sample2 u);
+// The same of a diffuse one, by a direction that was drawn by its cosine.
+BsdfSample diffuse_sample(const Bsdf& bsdf, Vec3f drawn);
 
 // Every direction that is reflected or refracted without scattering, each with its whole share: for
 // recursion that follows all.

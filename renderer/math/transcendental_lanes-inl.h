@@ -57,6 +57,17 @@ struct SineCosine {
     V sine, cosine;
 };
 
+// Of at most pi/4.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE SineCosine<D> sin_cos_near_zero(D d, V x)
+{
+    const auto set = [&](double value) HWY_ATTR { return hn::Set(d, value); };
+    const V z = hn::Mul(x, x), half = hn::Mul(set(0.5), z), w = hn::Sub(set(1), half);
+    const V rest = hn::Mul(hn::Mul(z, z), polynomial(d, z, transcendental::kCosine));
+    return {hn::Add(x, hn::Mul(x, hn::Mul(z, polynomial(d, z, transcendental::kSine)))),
+            hn::Add(w, hn::Add(hn::Sub(hn::Sub(set(1), w), half), rest))};
+}
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE SineCosine<D> sin_cos(D d, V radians)
 {
@@ -70,12 +81,7 @@ HWY_INLINE SineCosine<D> sin_cos(D d, V radians)
     const V tail = hn::Sub(lost, hn::Mul(quarters, set(transcendental::kQuarterTurn[2])));
     const V x = hn::Add(y, tail), low = hn::Add(hn::Sub(y, x), tail);
 
-    const V z = hn::Mul(x, x);
-    const V s0 = hn::Add(x, hn::Mul(x, hn::Mul(z, polynomial(d, z, transcendental::kSine))));
-    const V half = hn::Mul(set(0.5), z), w = hn::Sub(set(1), half);
-    const V c0 = hn::Add(w,
-                         hn::Add(hn::Sub(hn::Sub(set(1), w), half),
-                                 hn::Mul(hn::Mul(z, z), polynomial(d, z, transcendental::kCosine))));
+    const auto [s0, c0] = sin_cos_near_zero(d, x);
     const V s1 = hn::Add(s0, hn::Mul(low, c0)), c1 = hn::Sub(c0, hn::Mul(low, s0));
     const auto quarter = hn::BitCast(u, shifted);
     const auto one = hn::Set(u, 1), two = hn::Set(u, 2);
