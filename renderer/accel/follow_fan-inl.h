@@ -167,15 +167,17 @@ public:
     }
 
 private:
-    // While others are looked at.
+    // What is to be visited comes while others are looked at.
     HWY_INLINE void fetch(std::uint32_t code) const
     {
+        constexpr std::size_t kLine = 64;
         const bool leaf = (code & ChildCode::kLeaf) != 0;
-        const void* const at = leaf ? static_cast<const void*>(mesh_.leaves + (code & ChildCode::kNumber))
-                                    : static_cast<const void*>(mesh_.nodes + code);
-        const auto* const bytes = static_cast<const char*>(at);
-        for (int line = 0; line < (leaf ? 5 : 4); ++line)
-            __builtin_prefetch(bytes + line * 64);
+        const char* const of_leaf = reinterpret_cast<const char*>(mesh_.leaves + (code & ChildCode::kNumber));
+        const char* const of_node = reinterpret_cast<const char*>(mesh_.nodes + code);
+        const char* const bytes = leaf ? of_leaf : of_node;
+        const std::size_t size = leaf ? 2 * sizeof(TriangleBlock) : sizeof(WideNode);
+        for (std::size_t at = 0; at < size; at += kLine)
+            __builtin_prefetch(bytes + at);
     }
 
     HWY_INLINE float farthest_end() const

@@ -41,9 +41,10 @@ struct MeshMaterial {
     bool is_physical = false;
     float metallic = 0, roughness = 1;
     float ior = 1.5f; // 1 to kGreatestMeshIor
-    // A closed body of glass, of that index; beside roughness and normal map nothing else counts.
+    // A closed body of glass, of that index; beside roughness, normal map and these two nothing else counts.
     bool is_glass = false;
-    Rgb absorption{}; // of light within it, 1/m
+    Rgb absorption{};          // of light within it, 1/m
+    Rgb transmission{1, 1, 1}; // share of light that a boundary lets pass, of what it does not reflect
     float opacity = 1;
     float cutoff = 0; // where alpha is below it there is nothing; 0: alpha makes no holes
     Rgb emission{};   // radiance of the whole surface, W/(m^2 sr)

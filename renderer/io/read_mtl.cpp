@@ -176,6 +176,7 @@ bool MtlReader::property(std::string_view word, std::string_view rest)
     }
     if (word == "Ks") return take_color(rest, m.specular);
     if (word == "Ns") return take_shininess(rest, m.shininess);
+    if (word == "Tf") return take_color(rest, m.transmission);
     if (word == "Ke") return take_emission(rest, m.emission);
     if (word == "d") return take_dissolve(rest, m.is_transparent);
     if (word == "Tr") return take_above(rest, 0, m.is_transparent);

@@ -55,6 +55,7 @@ void take_glass(const aiMaterial& from, MeshMaterial& to)
                   factor_of(from, 0, AI_MATKEY_VOLUME_THICKNESS_FACTOR) > 0 && to.metallic < 0.5f;
     if (!to.is_glass) return;
     to.is_transparent = false;
+    to.transmission = to.diffuse;
     to.ior = std::clamp(factor_of(from, 1.5f, AI_MATKEY_REFRACTI), 1.0f, kGreatestMeshIor);
     const float distance = factor_of(from, 0, AI_MATKEY_VOLUME_ATTENUATION_DISTANCE);
     aiColor3D left;

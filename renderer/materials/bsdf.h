@@ -51,11 +51,11 @@ struct Bsdf {
     float lobe_share = 0;  // Phong: of the samples, drawn around the mirror direction
     float roughness = 0;   // its square is alpha, the width of the facets' slopes
     float eta = 1; // glass: index behind over index on wo's side, at first as from vacuum; cook_torrance: ior
-    Rgb diffuse{0.5f, 0.5f, 0.5f};
-    Rgb specular{}; // Phong: k_s; mirror: its colour; conductor: eta
-    Rgb k{};        // conductor
-    Rgb ambient{};  // radiance added whatever the light
-    Rgb emission{}; // radiance that an emitter sends out, from its front or both sides
+    Rgb diffuse{0.5f, 0.5f, 0.5f}; // glass: of what passes, the share that is let through
+    Rgb specular{};                // Phong: k_s; mirror: its colour; conductor: eta
+    Rgb k{};                       // conductor
+    Rgb ambient{};                 // radiance added whatever the light
+    Rgb emission{};                // radiance that an emitter sends out, from its front or both sides
     double shininess = 0;
     float share_below_one = 0; // cook_torrance: the share that is a dielectric, if its ior is below 1
     Layers layers{};           // cook_torrance, conductor

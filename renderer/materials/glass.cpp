@@ -20,9 +20,9 @@ double alpha_of(const Bsdf& bsdf)
     return static_cast<double>(bsdf.roughness) * static_cast<double>(bsdf.roughness);
 }
 
-Rgb transmitted_radiance(float eta)
+Rgb transmitted_radiance(const Bsdf& bsdf)
 {
-    return kWhite * (1 / (eta * eta));
+    return bsdf.diffuse * (1 / (bsdf.eta * bsdf.eta));
 }
 
 Vec3f mirrored(Vec3f w)
@@ -56,7 +56,7 @@ BsdfValue evaluate_reflection(const Microfacets& facets, double eta, Vec3d o, Ve
             static_cast<float>(density * seen)};
 }
 
-BsdfValue evaluate_transmission(const Microfacets& facets, double eta, Vec3d o, Vec3d i)
+BsdfValue evaluate_transmission(const Microfacets& facets, double eta, Rgb passing, Vec3d o, Vec3d i)
 {
     // The facet that refracts i to o. Its length is what Walter's denominators square, up to its sign.
     const Vec3d along = o + i * eta;
@@ -69,7 +69,7 @@ BsdfValue evaluate_transmission(const Microfacets& facets, double eta, Vec3d o, 
     const double scattered = passed * facets.distribution(h) * o_h * i_h / length2;
     const double cos_i = -i.z;
     const double seen = 2 / (o.z + facets.slope_length(o.z)); // G1 / cos_o
-    return {kWhite * static_cast<float>(4 * scattered * facets.visibility(o.z, cos_i) * cos_i),
+    return {passing * static_cast<float>(4 * scattered * facets.visibility(o.z, cos_i) * cos_i),
             static_cast<float>(scattered * seen * eta * eta)};
 }
 
@@ -83,6 +83,7 @@ Bsdf make_glass(const GlassMaterial& m)
     bsdf.roughness = static_cast<float>(roughness);
     bsdf.medium = {static_cast<float>(m.ior), m.priority, m.absorption};
     bsdf.eta = bsdf.medium.ior;
+    bsdf.diffuse = m.transmission;
     return bsdf;
 }
 
@@ -97,7 +98,7 @@ BsdfValue evaluate_glass(const Bsdf& bsdf, Vec3f wo, Vec3f wi)
     const Microfacets facets(alpha_of(bsdf));
     const auto eta = static_cast<double>(bsdf.eta);
     return wi.z > 0 ? evaluate_reflection(facets, eta, unit_double(wo), unit_double(wi))
-                    : evaluate_transmission(facets, eta, unit_double(wo), unit_double(wi));
+                    : evaluate_transmission(facets, eta, bsdf.diffuse, unit_double(wo), unit_double(wi));
 }
 
 BsdfSample sample_smooth_glass(const Bsdf& bsdf, Vec3f wo, float u_lobe)
@@ -110,14 +111,14 @@ BsdfSample sample_smooth_glass(const Bsdf& bsdf, Vec3f wo, float u_lobe)
     if (all.count == 1) return {first.wi, kWhite, 1, true, false};
     const float reflected = first.weight.r;
     if (u_lobe < reflected) return {first.wi, kWhite, reflected, true, false};
-    return {all.lobes[1].wi, transmitted_radiance(bsdf.eta), 1 - reflected, true, true};
+    return {all.lobes[1].wi, transmitted_radiance(bsdf), 1 - reflected, true, true};
 }
 
 DeltaLobes delta_lobes_of_glass(const Bsdf& bsdf, Vec3f wo)
 {
     DeltaLobes out;
     if (passes_straight(bsdf)) {
-        out.lobes[out.count++] = {-wo, kWhite, true};
+        out.lobes[out.count++] = {-wo, bsdf.diffuse, true};
         return out;
     }
     if (bsdf.kind == BsdfKind::rough_glass || !(wo.z > 0)) return out;
@@ -127,7 +128,7 @@ DeltaLobes delta_lobes_of_glass(const Bsdf& bsdf, Vec3f wo)
     if (reflected > 0) out.lobes[out.count++] = {mirrored(wo), kWhite * reflected, false};
     if (reflected < 1)
         out.lobes[out.count++] = {
-            refracted(wo, eta, met.cos_transmitted), transmitted_radiance(bsdf.eta) * (1 - reflected), true};
+            refracted(wo, eta, met.cos_transmitted), transmitted_radiance(bsdf) * (1 - reflected), true};
     return out;
 }
 

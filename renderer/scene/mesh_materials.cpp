@@ -30,6 +30,7 @@ Material glass(const MeshMaterial& m)
     GlassMaterial out;
     out.ior = static_cast<double>(m.ior);
     out.absorption = {m.absorption};
+    out.transmission = m.transmission;
     if (!m.is_physical) return out; // smooth
     std::optional<TextureUse> map = m.physical_map;
     if (map) map->channel = 1;

@@ -28,7 +28,7 @@ namespace server {
 
 // Changes whenever the flat form or what the importer makes of a file does: the head of the form has it, so that
 // a service never takes the output of another build's importer.
-constexpr std::uint32_t kImporterVersion = 4;
+constexpr std::uint32_t kImporterVersion = 5;
 
 // How the name that the importer is given begins where a picture is wanted.
 inline constexpr std::string_view kPictureWord = "picture";

@@ -58,6 +58,7 @@ public:
         for (const float value : {m.metallic, m.roughness, m.ior, m.opacity, m.cutoff})
             add(value);
         add(m.absorption);
+        add(m.transmission);
         add(m.emission);
         for (const auto* const map :
              {&m.color_map, &m.specular_map, &m.alpha_map, &m.physical_map, &m.emission_map, &m.normal_map})
@@ -141,9 +142,10 @@ public:
                take_flag(m.emits) && take_flag(m.is_transparent) && take_flag(m.is_metal) &&
                take_flag(m.has_roughness) && take_flag(m.is_physical) && take_flag(m.is_glass) &&
                take_flag(m.two_sided) && take(m.metallic) && take(m.roughness) && take(m.ior) &&
-               take(m.opacity) && take(m.cutoff) && take(m.absorption) && take(m.emission) &&
-               take_map(m.color_map) && take_map(m.specular_map) && take_map(m.alpha_map) &&
-               take_map(m.physical_map) && take_map(m.emission_map) && take_map(m.normal_map);
+               take(m.opacity) && take(m.cutoff) && take(m.absorption) && take(m.transmission) &&
+               take(m.emission) && take_map(m.color_map) && take_map(m.specular_map) &&
+               take_map(m.alpha_map) && take_map(m.physical_map) && take_map(m.emission_map) &&
+               take_map(m.normal_map);
     }
     bool take_map(std::optional<renderer::TextureUse>& map)
     {

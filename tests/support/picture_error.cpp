@@ -61,6 +61,23 @@ Rgb mean_of(const LinearImage& image)
     return {static_cast<float>(sum.r / n), static_cast<float>(sum.g / n), static_cast<float>(sum.b / n)};
 }
 
+LinearImage in_squares(const LinearImage& image, std::uint32_t side)
+{
+    LinearImage squares{image.width_px / side, image.height_px / side, {}};
+    for (std::uint32_t y = 0; y < squares.height_px; ++y)
+        for (std::uint32_t x = 0; x < squares.width_px; ++x) {
+            LinearImage square{side, side, {}};
+            for (std::uint32_t row = 0; row < side; ++row) {
+                const Rgb* const first = image.pixels.data() +
+                                         (std::size_t{y} * side + row) * image.width_px +
+                                         std::size_t{x} * side;
+                square.pixels.insert(square.pixels.end(), first, first + side);
+            }
+            squares.pixels.push_back(mean_of(square));
+        }
+    return squares;
+}
+
 double relative_rmse(const LinearImage& image, const LinearImage& reference)
 {
     const double floor = 0.2 * overall_mean(reference), e = floor * floor;

@@ -3,6 +3,7 @@
 
 #include "renderer/film/film.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -13,6 +14,10 @@ std::optional<renderer::LinearImage> read_pfm(const std::string& path);
 
 // sqrt(mean over pixels and channels of (x - ref)^2 / (ref^2 + e)), e = (0.2 mean of ref)^2.
 double relative_rmse(const renderer::LinearImage& image, const renderer::LinearImage& reference);
+
+// Means of squares of side x side pixels, which tells what is wrong in places from noise; both sides of the picture are
+// multiples of it.
+renderer::LinearImage in_squares(const renderer::LinearImage& image, std::uint32_t side);
 
 renderer::Rgb mean_of(const renderer::LinearImage& image);
 

@@ -228,6 +228,33 @@ TEST(GlassBody, OfAMeshsOwnMaterialIsAsOneThatTheSceneNames)
     }
 }
 
+// Of index 1 all passes, straight, and through both boundaries of the ball.
+TEST(GlassBody, OfAColourTintsWhatPassesEachOfItsBoundaries)
+{
+    const Balls balls;
+    for (const double roughness : {0.0, 0.3})
+        for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
+            if (roughness > 0 && transport == TransportType::whitted) continue;
+            TestScene test = ball_before_the_sky(glass(1.5), transport);
+            test.description.environment = ColorEnvironment{{1, 1, 1}};
+            test.description.transport.max_depth = 8;
+            test.description.objects[0].shape = MeshShape{};
+            test.description.objects[0].material.reset();
+            test.meshes = {balls.glass};
+            MeshMaterial& material = test.meshes[0].materials[0];
+            material.ior = 1;
+            material.is_physical = roughness > 0;
+            material.roughness = static_cast<float>(roughness);
+            material.transmission = {1, 0.5f, 0.25f};
+            const LinearImage image = render_description(test).film.mean();
+            const Rgb middle =
+                image.pixels[std::size_t{image.height_px / 2} * image.width_px + image.width_px / 2];
+            EXPECT_NEAR(middle.r, 1, 1e-5);
+            EXPECT_NEAR(middle.g, 0.25, 1e-5);
+            EXPECT_NEAR(middle.b, 0.0625, 1e-5);
+        }
+}
+
 TEST(GlassBody, WithinAnotherOfTheSameMeshIsABodyOfItsOwn)
 {
     const Balls balls;

@@ -241,7 +241,8 @@ renderer::MeshMaterial glass_of(const std::string& factors, const std::string& e
 
 TEST(ReadGltf, TakesTransmittingBodiesThatHaveAVolumeAsGlass)
 {
-    const std::string factors = R"("metallicFactor":0,"roughnessFactor":0.25)",
+    const std::string factors =
+                          R"("metallicFactor":0,"roughnessFactor":0.25,"baseColorFactor":[0.5,1,0.25,1])",
                       transmission = R"("KHR_materials_transmission":{"transmissionFactor":1})";
     const renderer::MeshMaterial glass = glass_of(
         factors,
@@ -252,6 +253,7 @@ TEST(ReadGltf, TakesTransmittingBodiesThatHaveAVolumeAsGlass)
     EXPECT_FALSE(glass.is_transparent);
     EXPECT_FLOAT_EQ(glass.ior, 1.33f);
     EXPECT_FLOAT_EQ(glass.roughness, 0.25f);
+    EXPECT_EQ(glass.transmission, (renderer::Rgb{0.5f, 1, 0.25f}));
     EXPECT_EQ(glass.absorption.r, 0);
     EXPECT_NEAR(glass.absorption.g, std::log(2.0) / 2, 1e-6);
     EXPECT_NEAR(glass.absorption.b, std::log(4.0) / 2, 1e-6);

@@ -212,7 +212,7 @@ TEST(ReadObj, TakesMaterialsWhoseModelIsGlassAsGlass)
 {
     const Files files{{"a.mtl",
                        "newmtl water\nKd 1 1 1\nillum 7\nNi 1.33\nd 0.1\n"
-                       "newmtl dense\nKd 1 1 1\nillum 4\nNi 99\n"
+                       "newmtl dense\nKd 1 1 1\nillum 4\nNi 99\nTf 0.5 1 0.25\n"
                        "newmtl matt\nKd 1 1 1\nillum 2\nNi 1.5\nd 0.1\n"}};
     const std::string body = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     const ImportedMesh result = mesh_of("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl water\n" +
@@ -225,6 +225,8 @@ TEST(ReadObj, TakesMaterialsWhoseModelIsGlassAsGlass)
     EXPECT_FLOAT_EQ(materials[0].ior, 1.33f);
     EXPECT_TRUE(materials[1].is_glass);
     EXPECT_FLOAT_EQ(materials[1].ior, 10);
+    EXPECT_EQ(materials[0].transmission, (renderer::Rgb{1, 1, 1}));
+    EXPECT_EQ(materials[1].transmission, (renderer::Rgb{0.5f, 1, 0.25f}));
     EXPECT_FALSE(materials[2].is_glass);
     EXPECT_TRUE(materials[2].is_transparent);
 }
