@@ -37,6 +37,7 @@ ImportedAsset tetrahedron()
     mesh.materials[2].is_glass = true;
     mesh.materials[2].ior = 1.25f;
     mesh.materials[2].absorption = {0, 1, 2};
+    mesh.materials[2].transmission = {0.5f, 1, 0.25f};
     mesh.images = {{"red.png", {1, 1, 3, renderer::PixelType::whole_8, {}}},
                    {"bump.png", {1, 1, 1, renderer::PixelType::real_32, {}}}};
     mesh.images[0].image.bytes.append({std::byte{9}, std::byte{8}, std::byte{7}});
@@ -106,6 +107,7 @@ TEST(FlatMesh, GivesBackWhatWasWritten)
         EXPECT_EQ(asset.mesh.materials[i].is_glass, i == 2);
         EXPECT_EQ(asset.mesh.materials[i].ior, before.mesh.materials[i].ior);
         EXPECT_EQ(asset.mesh.materials[i].absorption, before.mesh.materials[i].absorption);
+        EXPECT_EQ(asset.mesh.materials[i].transmission, before.mesh.materials[i].transmission);
     }
     EXPECT_EQ(asset.mesh.materials[0].textures, before.mesh.materials[0].textures);
     EXPECT_EQ(asset.mesh.materials[1].specular, before.mesh.materials[1].specular);
