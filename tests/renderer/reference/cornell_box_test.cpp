@@ -53,7 +53,7 @@ tests::TestScene cornell_box()
     d.camera->aim = {0, 1, 0};
     d.camera->fov_deg = 39;
     d.transport.type = TransportType::path;
-    d.transport.max_depth = 8;
+    d.transport.max_depth = 9; // that many hits
     test.settings.image.width_px = test.settings.image.height_px = 512;
     return test;
 }
