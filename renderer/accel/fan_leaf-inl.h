@@ -23,8 +23,7 @@ struct FanLeaf {
     alignas(32) float whole[3][kLanes];
     alignas(32) float edge_error[kLanes], whole_error[kLanes];
     alignas(32) float least_volume[kLanes],
-        most_volume[kLanes];        // certain bounds, positive where it is a face
-    alignas(32) float flip[kLanes]; // the sign that makes the side that is seen the inner one
+        most_volume[kLanes];                             // certain bounds, positive where it is a face
     alignas(32) float nearest[kLanes], farthest[kLanes]; // certain bounds of the corners' depths
     // The slopes of rays that may meet it are between these; infinite where a corner is not clearly beyond the apex.
     alignas(32) float least_x[kLanes], most_x[kLanes], least_y[kLanes], most_y[kLanes];
@@ -84,7 +83,7 @@ private:
 
     // Errors, relative ones in units of 2^-24. A is the farthest corner's largest coordinate from the apex, L that of the
     // longest edge, w at most kSteepest. Corners from the apex have 2, the apex being two floats, and 2^-45 of the
-    // coordinates' size, which `aside` takes in; edges from corner to corner 1. A product of both, subtracted from
+    // coordinates' size, which `blur` takes in; edges from corner to corner 1. A product of both, subtracted from
     // another, has 5, of edges 4; so an edge function has w * 5 * 6 A L at most, a determinant w * 4 * 6 L^2, a
     // volume 4 * 6 L^2 A and 5 of |whole|_1 A. Evaluating one, the slopes (3 roundings), two products and sums make
     // less than 16 |n|_1, also where it is the corner of a group's bounds that is asked. The double test itself
@@ -168,10 +167,10 @@ private:
         if (meeting == 0) return;
         out.meeting |= meeting << lane;
         const auto store = [&](V value, float* to) HWY_ATTR { hn::Store(value, d, to + lane); };
-        V flip = hn::CopySign(hn::Zero(d), volume);
+        V flip = hn::CopySign(hn::Zero(d), volume); // makes the side that is seen the inner one
         if constexpr (kPrecise) {
-            see_planes(at, farthest, longest, fan_.rounded > 0 ? longest_squared : hn::Zero(d), lane, out);
-            flip = hn::Load(d, out.flip + lane);
+            flip = see_planes(
+                at, farthest, longest, fan_.rounded > 0 ? longest_squared : hn::Zero(d), lane, out);
         } else {
             const V size = hn::Abs(volume), error = hn::MulAdd(size, set(0x1p-22f), volume_error);
             out.faces |= bits_of(d, hn::Gt(size, error)) << lane;
@@ -191,21 +190,21 @@ private:
         bound_slopes(corner, depth_slack, lane, out);
     }
 
-    // Planes and depths in double.
-    HWY_INLINE void see_planes(const V (&corners)[3][3],
-                               V farthest_corner,
-                               V longest_edge,
-                               V rounding,
-                               unsigned lane,
-                               FanLeaf& out) const
+    // Planes and depths in double. The signs that make the sides that are seen the inner ones.
+    HWY_INLINE V see_planes(const V (&corners)[3][3],
+                            V farthest_corner,
+                            V longest_edge,
+                            V rounding,
+                            unsigned lane,
+                            FanLeaf& out) const
     {
         const hn::CappedTag<double, kSeenAtOnce> d;
         const hn::Rebind<float, decltype(d)> f;
         using W = hn::Vec<decltype(d)>;
         constexpr unsigned kLanes = hn::MaxLanes(d);
         const D of_corners;
-        alignas(32) float at[3][3][kSeenAtOnce], farthest[kSeenAtOnce], longest_edges[kSeenAtOnce],
-            roundings[kSeenAtOnce];
+        alignas(32) float at[3][3][kSeenAtOnce], farthest[kSeenAtOnce], flips[kSeenAtOnce],
+            longest_edges[kSeenAtOnce], roundings[kSeenAtOnce];
         hn::Store(farthest_corner, of_corners, farthest);
         hn::Store(longest_edge, of_corners, longest_edges);
         hn::Store(rounding, of_corners, roundings);
@@ -248,7 +247,7 @@ private:
             out.faces |= bits_of(d, hn::Gt(size, error)) << (lane + i);
             const auto store = [&](W value, float* to)
                                    HWY_ATTR { hn::Store(hn::DemoteTo(f, value), f, to + lane + i); };
-            store(flip, out.flip);
+            hn::Store(hn::DemoteTo(f, flip), f, flips + i);
             store(hn::Sub(size, error), out.least_volume);
             store(hn::Add(size, error), out.most_volume);
             store(hn::MulAdd(size_of_whole,
@@ -260,6 +259,7 @@ private:
             for (std::size_t axis = 0; axis < 3; ++axis)
                 store(hn::Xor(whole[axis], flip), out.whole[axis]);
         }
+        return hn::Load(of_corners, flips);
     }
 
     HWY_INLINE void bound_slopes(const V (&corner)[3][3], V depth_slack, unsigned lane, FanLeaf& out) const

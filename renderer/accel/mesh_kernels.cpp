@@ -4,6 +4,7 @@
 #include "renderer/accel/exact_test.h"
 #include "renderer/accel/ray_fan.h"
 #include "renderer/accel/ray_run.h"
+#include "renderer/math/kernel_targets.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,16 +12,12 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 // This file is compiled once for every target of Highway; what is above, for the baseline alone. The order of
 // the rest matters.
 // clang-format off
-// Few processors stop at SSSE3: the portable kernel will do. Vectors of SVE have no size and cannot be members;
-// where it is, NEON is too.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "renderer/accel/mesh_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -237,33 +234,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace renderer {
 
-namespace {
-
-std::vector<MeshKernels> find_kernels()
-{
-    struct Compiled {
-        std::int64_t target;
-        MeshKernels (*kernels)(); // none: not for this architecture
-    };
-    const Compiled compiled[]{{HWY_AVX3, HWY_CHOOSE_AVX3(kernels)},
-                              {HWY_AVX2, HWY_CHOOSE_AVX2(kernels)},
-                              {HWY_SSE4, HWY_CHOOSE_SSE4(kernels)},
-                              {HWY_NEON, HWY_CHOOSE_NEON(kernels)}};
-    std::vector<MeshKernels> found;
-    for (const Compiled& c : compiled)
-        if (c.kernels != nullptr && (hwy::SupportedTargets() & c.target) != 0) found.push_back(c.kernels());
-    if (const MeshKernels portable = (HWY_CHOOSE_FALLBACK(kernels))();
-        found.empty() || std::string_view(found.back().name) != portable.name)
-        found.push_back(portable);
-    return found;
-}
-
-} // namespace
-
 std::span<const MeshKernels> all_mesh_kernels()
 {
-    static const std::vector<MeshKernels> kernels = find_kernels();
-    return kernels;
+    static const std::vector<MeshKernels> usable = HELIOGRAPH_USABLE_KERNELS(MeshKernels, kernels);
+    return usable;
 }
 
 const MeshKernels& mesh_kernels()

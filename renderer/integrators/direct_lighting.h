@@ -9,6 +9,7 @@
 #pragma once
 
 #include "renderer/integrators/radiance.h"
+#include "renderer/lights/sample_emitter.h"
 #include "renderer/math/uninitialized.h"
 
 #include <span>

@@ -1,27 +1,16 @@
-// Emitter: a surface that shines, to be sampled from a point: triangle, parallelogram, disk or sphere.
+// Emitter: a surface that shines: triangle, parallelogram, disk, sphere or ellipsoid. sample_emitter.h draws from it.
 //
 // Frame   that of the scene which is traced; points and vectors in double.
-// Units   radiance W/(m^2 sr), the same in every direction from the shining side; densities per steradian, seen
-//         from the point.
-// Promise sample() draws only directions in which the emitter's shining side is seen from the point, if nothing
-//         else were there, and pdf() is the density of what it draws. A point in the emitter's own plane is not
-//         lit.
-// Source  rectangles: C. Urena et al., "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013;
-//         spheres: the cone of directions, P. Shirley et al., "Monte Carlo Techniques for Direct Lighting
-//         Calculations", ACM TOG 15(1), 1996; triangles: J. Arvo, "Stratified Sampling of Spherical Triangles",
-//         SIGGRAPH 1995. What is sheared, disks, ellipsoids, and what is small as seen from the point, by area.
-// Cost    some 100 operations; no allocation, no virtual call.
+// Units   radiance W/(m^2 sr), the same in every direction from the shining side.
 #pragma once
 
 #include "renderer/color/rgb.h"
 #include "renderer/math/affine.h"
 #include "renderer/math/bounds.h"
 #include "renderer/math/vec3.h"
-#include "renderer/sampling/sampler.h"
 
 #include <cstdint>
 #include <optional>
-#include <span>
 
 namespace renderer {
 
@@ -48,20 +37,6 @@ std::optional<Emitter>
 disk_emitter(const Affine3& world_from_disk, double radius, Rgb radiance, bool two_sided);
 std::optional<Emitter>
 sphere_emitter(const Affine3& world_from_sphere, double radius, Rgb radiance, bool two_sided);
-
-struct EmitterSample {
-    Vec3d wi{};          // unit, towards the emitter
-    double distance = 0; // to it; 0: nothing was drawn
-    double pdf = 0;
-};
-EmitterSample sample(const Emitter& emitter, Vec3d point, Sample2 u);
-// The same for many points, to the bit: out[i] of points[i] and u[i]. Of rectangles several are drawn side by side.
-void sample_many(const Emitter& emitter,
-                 std::span<const Vec3d> points,
-                 std::span<const Sample2> u,
-                 std::span<EmitterSample> out);
-// Density of the direction in which a ray from `point` met the emitter at `hit`.
-double pdf(const Emitter& emitter, Vec3d point, Vec3d hit);
 
 // Whether light leaves it towards `direction` from where its outward unit normal is `normal`.
 inline bool shines_towards(const Emitter& emitter, Vec3d normal, Vec3d direction)

@@ -1,10 +1,11 @@
 #include "renderer/lights/rectangle_kernels.h"
 
+#include "renderer/math/kernel_targets.h"
+
 #include <vector>
 
 // This file is compiled once for every target of Highway; what is above, for the baseline alone.
 // clang-format off
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "renderer/lights/rectangle_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -126,18 +127,12 @@ DrawOnRectangle rectangle_drawing()
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "renderer/math/kernel_targets.h"
-
 namespace renderer {
 
 std::span<const DrawOnRectangle> all_draw_on_rectangle()
 {
     static const std::vector<DrawOnRectangle> usable =
-        usable_kernels<DrawOnRectangle>({{HWY_AVX3, HWY_CHOOSE_AVX3(rectangle_drawing)},
-                                         {HWY_AVX2, HWY_CHOOSE_AVX2(rectangle_drawing)},
-                                         {HWY_SSE4, HWY_CHOOSE_SSE4(rectangle_drawing)},
-                                         {HWY_NEON, HWY_CHOOSE_NEON(rectangle_drawing)}},
-                                        (HWY_CHOOSE_FALLBACK(rectangle_drawing))());
+        HELIOGRAPH_USABLE_KERNELS(DrawOnRectangle, rectangle_drawing);
     return usable;
 }
 

@@ -1,11 +1,12 @@
 #include "renderer/sampling/hemisphere_kernels.h"
 
+#include "renderer/math/kernel_targets.h"
+
 #include <algorithm>
 #include <vector>
 
 // This file is compiled once for every target of Highway; what is above, for the baseline alone.
 // clang-format off
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "renderer/sampling/hemisphere_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -75,18 +76,12 @@ DrawInHemisphere hemisphere_drawing()
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "renderer/math/kernel_targets.h"
-
 namespace renderer {
 
 std::span<const DrawInHemisphere> all_draw_in_hemisphere()
 {
     static const std::vector<DrawInHemisphere> usable =
-        usable_kernels<DrawInHemisphere>({{HWY_AVX3, HWY_CHOOSE_AVX3(hemisphere_drawing)},
-                                          {HWY_AVX2, HWY_CHOOSE_AVX2(hemisphere_drawing)},
-                                          {HWY_SSE4, HWY_CHOOSE_SSE4(hemisphere_drawing)},
-                                          {HWY_NEON, HWY_CHOOSE_NEON(hemisphere_drawing)}},
-                                         (HWY_CHOOSE_FALLBACK(hemisphere_drawing))());
+        HELIOGRAPH_USABLE_KERNELS(DrawInHemisphere, hemisphere_drawing);
     return usable;
 }
 

@@ -2,6 +2,8 @@
 
 #include "renderer/film/encode_png.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -90,6 +92,21 @@ double relative_rmse(const LinearImage& image, const LinearImage& reference)
         }
     }
     return std::sqrt(sum / static_cast<double>(3 * reference.pixels.size()));
+}
+
+void expect_looks_as(const std::string& name,
+                     const LinearImage& image,
+                     const LinearImage& reference,
+                     double most,
+                     double most_of_mean)
+{
+    const double error = relative_rmse(image, reference);
+    EXPECT_LT(error, most) << leave_for_inspection(name, image, reference);
+    const Rgb got = mean_of(image), want = mean_of(reference);
+    EXPECT_NEAR(got.r / want.r, 1, most_of_mean);
+    EXPECT_NEAR(got.g / want.g, 1, most_of_mean);
+    EXPECT_NEAR(got.b / want.b, 1, most_of_mean);
+    testing::Test::RecordProperty("relative_rmse", std::to_string(error));
 }
 
 std::string

@@ -21,6 +21,14 @@ renderer::LinearImage in_squares(const renderer::LinearImage& image, std::uint32
 
 renderer::Rgb mean_of(const renderer::LinearImage& image);
 
+// That a picture is less than `most` (a relative RMSE) from the reference, and each channel's mean within `most_of_mean` of its
+// own; otherwise it is left for inspection. The error found becomes the test's property "relative_rmse".
+void expect_looks_as(const std::string& name,
+                     const renderer::LinearImage& image,
+                     const renderer::LinearImage& reference,
+                     double most,
+                     double most_of_mean);
+
 // Writes NAME.png, NAME_reference.png and NAME_error.png (black: equal, white: 10 % or more of the mean off)
 // to the system's folder for temporary files, and says where.
 std::string leave_for_inspection(const std::string& name,

@@ -2,7 +2,7 @@
 //
 // Source  J. Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": rectangles, disks; spheres that
 //         the horizon cuts: values of numerical integration.
-#include "renderer/lights/emitter.h"
+#include "renderer/lights/sample_emitter.h"
 #include "renderer/math/transcendental.h"
 
 #include <gtest/gtest.h>
@@ -80,6 +80,32 @@ TEST(Emitter, RectangleLightsAPointUnderItsCornerAndUnderItsCentre)
 {
     expect_irradiance(ceiling(1, 1, {0.5, 1, 0.5}), {0, 0, 0}, {0, 1, 0}, 0.1385316060, "corner");
     expect_irradiance(ceiling(2, 2, {0, 1, 0}), {0, 0, 0}, {0, 1, 0}, 0.5541264240, "centre");
+}
+
+// Lambert's sum over the sides of a polygon all of which is seen: half the angles between its corners, by how much each side's
+// plane faces the surface.
+double lit_by_polygon(const std::vector<Vec3d>& corners, Vec3d point, Vec3d normal)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec3d a = corners[i] - point, b = corners[(i + 1) % corners.size()] - point;
+        const Vec3d side = cross(a, b);
+        sum += std::atan2(length(side), dot(a, b)) * dot(side, normal) / length(side);
+    }
+    return std::abs(sum) / (2 * kPi);
+}
+
+TEST(Emitter, RectangleLightsAWallThatItsLightGrazes)
+{
+    const Emitter lamp = ceiling(0.5, 0.4, {0, 1.98, 0});
+    const std::vector<Vec3d> corners{
+        {-0.25, 1.98, -0.2}, {0.25, 1.98, -0.2}, {0.25, 1.98, 0.2}, {-0.25, 1.98, 0.2}};
+    for (const double below : {0.001, 0.01, 0.03, 0.1, 0.5}) {
+        const Vec3d point{0.3, 1.98 - below, -1}, normal{0, 0, 1};
+        const double want = lit_by_polygon(corners, point, normal);
+        const Estimate got = irradiance(lamp, point, normal);
+        EXPECT_NEAR(got.mean / want, 1, 1e-4) << below;
+    }
 }
 
 TEST(Emitter, TwoTrianglesLightAsTheirRectangle)

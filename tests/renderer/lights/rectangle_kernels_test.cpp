@@ -1,6 +1,6 @@
 // Every kernel that this processor can run: the same points of a rectangle as drawn one by one.
-#include "renderer/lights/emitter.h"
 #include "renderer/lights/rectangle_kernels.h"
+#include "renderer/lights/sample_emitter.h"
 #include "renderer/lights/spherical_sampling.h"
 #include "renderer/math/vec3.h"
 

@@ -23,6 +23,9 @@ inline constexpr std::size_t kBig = 256 << 20; // bytes that GET /big gives
 
 // The head of a body of PUT /read that is too large to be waited for.
 inline const std::string kLargeHead = "PUT /read HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\n";
+// Enough of the body for a thread, and what is left of it.
+inline const std::string kLargeStart = kLargeHead + std::string(70000, 'x');
+inline const std::string kLargeRest(30000, 'x');
 
 // A server whose handlers do what a test needs, and which says when a waiting one has begun and ended.
 class Guarded : public testing::Test {

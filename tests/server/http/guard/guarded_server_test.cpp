@@ -15,11 +15,8 @@ using server::GuardOptions;
 using test_support::fetch;
 using test_support::RawConnection;
 using tests::Guarded;
-using tests::kLargeHead;
-
-// Enough of a large body for a thread, and what is left of it.
-const std::string kLargeStart = kLargeHead + std::string(70000, 'x');
-const std::string kLargeRest(30000, 'x');
+using tests::kLargeRest;
+using tests::kLargeStart;
 
 TEST_F(Guarded, ServesManyRequestsOnOneConnectionAlsoSentAhead)
 {

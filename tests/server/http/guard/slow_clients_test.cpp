@@ -18,10 +18,7 @@ using test_support::RawConnection;
 using tests::Guarded;
 using tests::kBig;
 using tests::kLargeHead;
-
-// Enough of a large body for a thread, and what is left of it.
-const std::string kLargeStart = kLargeHead + std::string(70000, 'x');
-const std::string kLargeRest(30000, 'x');
+using tests::kLargeStart;
 
 // Connections of every slow kind. As many as descriptors allow: both ends are in this process.
 class SlowCrowd {
