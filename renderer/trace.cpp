@@ -4,6 +4,7 @@
 #include "renderer/integrators/path.h"
 #include "renderer/integrators/probes.h"
 #include "renderer/integrators/whitted.h"
+#include "renderer/sampling/sampler_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,15 +37,9 @@ public:
              std::uint32_t number,
              std::size_t pixel)
     {
-        const Sample2 jitter = sampler.sample_2d(number, static_cast<std::uint32_t>(Dimension::pixel));
-        const Camera& camera = scene_.camera();
-        const Sample2 lens = camera.needs_lens()
-                                 ? sampler.sample_2d(number, static_cast<std::uint32_t>(Dimension::lens))
-                                 : Sample2{};
-        const Ray ray =
-            camera.ray(x + static_cast<double>(jitter.u0), y + static_cast<double>(jitter.u1), lens);
-        samples_[count_] = {ray, &sampler, number};
-        pixels_[count_] = pixel;
+        samples_[count_].sampler = &sampler;
+        samples_[count_].number = number;
+        places_[count_] = {x, y, pixel};
         if (++count_ == kMostSamples) flush();
     }
 
@@ -52,11 +47,12 @@ public:
     void flush()
     {
         Rgb found[kMostSamples];
+        set_rays();
         if (!stop_.stop_requested()) radiance_of(found);
         stopped_ = stop_.stop_requested(); // for every run: without trees one may take long
         for (std::size_t i = 0; i < count_ && !stopped_; ++i) {
             if (is_finite(found[i]))
-                out_.sums.sums[pixels_[i]] += found[i];
+                out_.sums.sums[places_[i].pixel] += found[i];
             else
                 ++out_.tally.non_finite_samples;
         }
@@ -67,11 +63,31 @@ public:
     bool stopped() const { return stopped_; } // what there is may be incomplete
 
 private:
+    void draw(Dimension dimension, std::span<Sample2> out)
+    {
+        PairRun run;
+        for (std::size_t i = 0; i < count_; ++i)
+            run.set(i, *samples_[i].sampler, samples_[i].number, static_cast<std::uint32_t>(dimension));
+        draw_pairs()(run, out.first(count_));
+    }
+
+    void set_rays()
+    {
+        const Camera& camera = scene_.camera();
+        Sample2 jitter[kMostSamples], lens[kMostSamples];
+        draw(Dimension::pixel, jitter);
+        if (camera.needs_lens()) draw(Dimension::lens, lens);
+        for (std::size_t i = 0; i < count_; ++i)
+            samples_[i].ray = camera.ray(places_[i].x + static_cast<double>(jitter[i].u0),
+                                         places_[i].y + static_cast<double>(jitter[i].u1),
+                                         lens[i]);
+    }
+
     void add_layers()
     {
         for (std::size_t i = 0; i < count_; ++i)
             if (const FirstHit& hit = first_[i]; hit.is_there)
-                out_.sums.layers.add(pixels_[i], hit.distance_m, hit.normal, hit.albedo);
+                out_.sums.layers.add(places_[i].pixel, hit.distance_m, hit.normal, hit.albedo);
     }
 
     void radiance_of(std::span<Rgb> found)
@@ -99,9 +115,13 @@ private:
     TracedUnit& out_;
     bool stopped_ = false;
     std::size_t count_ = 0;
+    struct Place {
+        std::uint32_t x, y; // in the picture
+        std::size_t pixel;  // of the tile
+    };
     CameraSample samples_[kMostSamples];
-    std::size_t pixels_[kMostSamples]; // of the tile
-    std::vector<FirstHit> first_;      // where layers are asked for
+    Place places_[kMostSamples];
+    std::vector<FirstHit> first_; // where layers are asked for
 };
 
 // The slice of one block of the tile, sample by sample, so that a pixel's samples add up in their order.

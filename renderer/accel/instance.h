@@ -3,9 +3,9 @@
 
 #include "renderer/accel/baseline_mesh.h"
 #include "renderer/accel/mesh_bvh.h"
+#include "renderer/accel/placement.h"
 #include "renderer/geometry/disk.h"
 #include "renderer/geometry/sphere.h"
-#include "renderer/math/affine.h"
 #include "renderer/math/bounds.h"
 
 #include <cstdint>
@@ -49,8 +49,8 @@ public:
 
     Bounds3d world_bounds() const; // no smaller than what rays can hit
     bool visible_to(RayKind kind) const { return visible_to_camera_ || kind != RayKind::camera; }
-    const Affine3& world_from_object() const { return world_from_object_; }
-    const Affine3& object_from_world() const { return object_from_world_; }
+    const Affine3& world_from_object() const { return placement_.world_from_object; }
+    const Affine3& object_from_world() const { return placement_.object_from_world; }
     const InstanceGeometry& geometry() const { return geometry_; }
 
     // A hit before it is worked out: enough to compare. The ray is in the world.
@@ -64,22 +64,18 @@ public:
     static constexpr unsigned kMostRays = MeshKernels::kMostRays;
     // `instance` of the result is left to the caller.
     SceneHit resolve(const Ray& world_ray, const Candidate& candidate) const;
+    // The same for those of a run whose bits are set.
+    void resolve(std::span<const Ray> world_rays,
+                 const Candidate* candidates,
+                 std::uint64_t which,
+                 SceneHit* hits) const;
 
 private:
-    Instance(InstanceGeometry geometry,
-             const Affine3& world_from_object,
-             const Affine3& object_from_world,
-             bool visible_to_camera);
-    Ray to_object(const Ray& world_ray) const;
+    Instance(InstanceGeometry geometry, const Placement& placement, bool visible_to_camera);
     std::span<const Ray> to_object(std::span<const Ray> world_rays, Ray* room) const; // in `room`, if need be
-    SurfacePoint to_world(const SurfacePoint& object_point) const;
-    Vec3d round_trip_error(Vec3d world_reach) const;
-    static Affine3 error_of_round_trip(const Affine3& world_from_object, const Affine3& object_from_world);
 
     InstanceGeometry geometry_;
-    Affine3 world_from_object_, object_from_world_;
-    Affine3 trip_error_; // see round_trip_error
-    bool identity_;
+    Placement placement_;
     bool visible_to_camera_;
 };
 

@@ -1,6 +1,7 @@
 #include "renderer/accel/instance_tree.h"
 
 #include "renderer/accel/traverse.h"
+#include "renderer/math/uninitialized.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,20 +12,26 @@ namespace renderer {
 struct InstanceTree::Best {
     bool found = false;
     std::uint32_t asked = 0;
-    std::uint32_t instance = 0;
     Instance::Candidate candidate{};
 
-    // Takes the hit if it is nearer, or as near and of an earlier instance.
-    bool improve(const InstanceTree& tree, std::uint32_t number, const Instance::Candidate& hit)
+    void improve(const InstanceTree& tree, std::uint32_t number, const Instance::Candidate& hit)
     {
-        if (found && hit.t > candidate.t) return false;
-        const std::uint32_t of =
-            number < tree.instances_.size() ? number : tree.joined_->instance_of(hit.primitive);
-        if (found && hit.t == candidate.t && of > instance) return false;
-        *this = {true, number, of, hit};
-        return true;
+        if (!found || tree.is_better(number, hit, asked, candidate)) *this = {true, number, hit};
     }
 };
+
+// Nearer, or as near and of an earlier instance.
+bool InstanceTree::is_better(std::uint32_t number,
+                             const Instance::Candidate& hit,
+                             std::uint32_t best_number,
+                             const Instance::Candidate& best) const
+{
+    if (hit.t != best.t) return hit.t < best.t;
+    const auto instance_of = [&](std::uint32_t asked, const Instance::Candidate& found) {
+        return asked < instances_.size() ? asked : joined_->instance_of(found.primitive);
+    };
+    return instance_of(number, hit) < instance_of(best_number, best);
+}
 
 InstanceTree::InstanceTree(std::vector<Instance> instances, std::optional<JoinedMesh> joined)
     : instances_(std::move(instances)), joined_(std::move(joined))
@@ -92,9 +99,26 @@ void InstanceTree::consider(const Ray& ray, RayKind kind, std::uint32_t number, 
 SceneHit InstanceTree::resolve(const Ray& ray, const Best& best) const
 {
     if (best.asked >= instances_.size()) return joined_->resolve(best.candidate, instances_);
-    SceneHit hit = instances_[best.instance].resolve(ray, best.candidate);
-    hit.instance = best.instance;
+    SceneHit hit = instances_[best.asked].resolve(ray, best.candidate);
+    hit.instance = best.asked;
     return hit;
+}
+
+void InstanceTree::resolve(std::span<const Ray> rays,
+                           std::uint32_t asked,
+                           const Instance::Candidate* candidates,
+                           std::uint64_t which,
+                           std::span<SceneHit> hits) const
+{
+    const bool is_of_joined = asked >= instances_.size();
+    if (!is_of_joined) instances_[asked].resolve(rays, candidates, which, hits.data());
+    for (; which != 0; which &= which - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(which));
+        if (is_of_joined)
+            hits[i] = joined_->resolve(candidates[i], instances_);
+        else
+            hits[i].instance = asked;
+    }
 }
 
 namespace {
@@ -235,7 +259,21 @@ public:
     }
 
     std::uint64_t found() const { return found_; }
-    const Best& best(std::size_t ray) const { return best_[ray]; }
+
+    // Of those that were found, instance by instance.
+    void resolve(std::span<SceneHit> hits)
+    {
+        for (std::uint64_t left = found_; left != 0;) {
+            const std::uint32_t asked = asked_[std::countr_zero(left)];
+            std::uint64_t same = 0;
+            for (std::uint64_t others = left; others != 0; others &= others - 1) {
+                const int i = std::countr_zero(others);
+                same |= std::uint64_t{asked_[i] == asked} << i;
+            }
+            tree_.resolve(rays_, asked, candidates_.data(), same, hits);
+            left &= ~same;
+        }
+    }
 
 private:
     void walk_list()
@@ -320,7 +358,7 @@ private:
         const Instance& instance = tree_.asked(number);
         if (kAnyHit) rays &= ~found_;
         if (rays == 0 || !instance.visible_to(kind_)) return;
-        Ray asking[kMostRays];
+        Uninitialized<Ray, kMostRays> asking;
         unsigned from[kMostRays];
         unsigned count = 0;
         for (; rays != 0; rays &= rays - 1) {
@@ -330,20 +368,24 @@ private:
             from[count++] = ray;
         }
         if (kAnyHit) {
-            for (std::uint64_t met = instance.any_hits({asking, count}); met != 0; met &= met - 1) {
+            for (std::uint64_t met = instance.any_hits(asking.first(count)); met != 0; met &= met - 1) {
                 const unsigned ray = from[__builtin_ctzll(met)];
                 found_ |= std::uint64_t{1} << ray;
                 boxes_.end[ray] = -std::numeric_limits<double>::infinity();
             }
             return;
         }
-        Instance::Candidate hits[kMostRays];
-        for (std::uint64_t met = instance.closest_hits({asking, count}, hits); met != 0; met &= met - 1) {
+        Uninitialized<Instance::Candidate, kMostRays> hits;
+        for (std::uint64_t met = instance.closest_hits(asking.first(count), hits.data()); met != 0;
+             met &= met - 1) {
             const auto i = static_cast<unsigned>(__builtin_ctzll(met));
-            Best& best = best_[from[i]];
-            if (!best.improve(tree_, number, hits[i])) continue;
-            found_ |= std::uint64_t{1} << from[i];
-            boxes_.end[from[i]] = hits[i].t;
+            const unsigned ray = from[i];
+            if ((found_ >> ray & 1) != 0 && !tree_.is_better(number, hits[i], asked_[ray], candidates_[ray]))
+                continue;
+            found_ |= std::uint64_t{1} << ray;
+            asked_[ray] = number;
+            candidates_[ray] = hits[i];
+            boxes_.end[ray] = hits[i].t;
         }
     }
 
@@ -353,7 +395,8 @@ private:
     const MeshKernels& kernels_ = mesh_kernels();
     BoxRays boxes_;
     std::uint64_t found_ = 0;
-    Best best_[kMostRays];
+    std::uint32_t asked_[kMostRays]; // of those found: in which, and what
+    Uninitialized<Instance::Candidate, kMostRays> candidates_;
 };
 
 std::uint64_t
@@ -363,20 +406,14 @@ InstanceTree::closest_hits(std::span<const Ray> rays, std::span<SceneHit> hits, 
         const std::uint32_t number = bvh_.order[0];
         const Instance& only = asked(number);
         if (!only.visible_to(kind)) return 0;
-        Instance::Candidate found[kMostRays];
-        const std::uint64_t met = only.closest_hits(rays, found);
-        for (std::uint64_t left = met; left != 0; left &= left - 1) {
-            const auto i = static_cast<unsigned>(__builtin_ctzll(left));
-            hits[i] = resolve(rays[i], {true, number, number, found[i]});
-        }
+        Uninitialized<Instance::Candidate, kMostRays> found;
+        const std::uint64_t met = only.closest_hits(rays, found.data());
+        resolve(rays, number, found.data(), met, hits);
         return met;
     }
     RunWalk<false> run(*this, rays, kind);
     run.walk();
-    for (std::uint64_t left = run.found(); left != 0; left &= left - 1) {
-        const auto i = static_cast<unsigned>(__builtin_ctzll(left));
-        hits[i] = resolve(rays[i], run.best(i));
-    }
+    run.resolve(hits);
     return run.found();
 }
 

@@ -71,8 +71,17 @@ private:
     // Calls ask(instance) until it returns true, for those in the list that the ray may hit before `end`.
     template <typename Ask>
     void ask_listed(const Ray& ray, const double& end, Ask&& ask) const;
+    bool is_better(std::uint32_t number,
+                   const Instance::Candidate& hit,
+                   std::uint32_t best_number,
+                   const Instance::Candidate& best) const;
     void consider(const Ray& ray, RayKind kind, std::uint32_t number, Best& best) const;
     SceneHit resolve(const Ray& ray, const Best& best) const; // one that was found
+    void resolve(std::span<const Ray> rays,
+                 std::uint32_t asked, // that all of them were found in
+                 const Instance::Candidate* candidates,
+                 std::uint64_t which,
+                 std::span<SceneHit> hits) const;
 
     std::vector<Instance> instances_;
     std::optional<JoinedMesh> joined_;

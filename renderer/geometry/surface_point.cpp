@@ -37,8 +37,7 @@ SurfacePoint weighted_point(Vec3d a, Vec3d b, Vec3d c, Vec3d barycentrics)
     const Vec3d da = a * barycentrics.x, db = b * barycentrics.y, dc = c * barycentrics.z;
     SurfacePoint point;
     point.position = da + db + dc;
-    // Products and sums round; the weights themselves may miss a sum of 1 by four roundings.
-    point.error = (abs(da) + abs(db) + abs(dc)) * gamma<double>(8);
+    point.error = (abs(da) + abs(db) + abs(dc)) * gamma<double>(kWeighingRoundings);
     return point;
 }
 

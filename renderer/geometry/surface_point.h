@@ -27,4 +27,7 @@ SurfacePoint triangle_point(Vec3d a, Vec3d b, Vec3d c, Vec3d barycentrics);
 // The same without its normal, for those who know it.
 SurfacePoint weighted_point(Vec3d a, Vec3d b, Vec3d c, Vec3d barycentrics);
 
+// Products and sums round; the weights themselves may miss a sum of 1 by four roundings.
+inline constexpr int kWeighingRoundings = 8;
+
 } // namespace renderer

@@ -1,5 +1,7 @@
 #include "renderer/integrators/direct_lighting.h"
 
+#include "renderer/lights/sun_kernels.h"
+
 #include <limits>
 
 namespace renderer {
@@ -11,6 +13,18 @@ namespace {
 constexpr double kShadowEnd = 1 - 0x1p-20;
 
 } // namespace
+
+std::span<const Sample2>
+DirectLighting::draw(std::span<const LitPoint> points, ScatteringDimension which, std::uint32_t listed)
+{
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const CameraSample& of = *points[i].of;
+        pairs_.set(i, *of.sampler, of.number, dimension_of(points[i].scattering, which, listed));
+    }
+    const std::span<Sample2> drawn = numbers_.first(points.size());
+    draw_pairs()(pairs_, drawn);
+    return drawn;
+}
 
 void DirectLighting::add(const LitPoint& point, std::size_t i, const Arrival& arrival)
 {
@@ -53,18 +67,35 @@ void DirectLighting::add_delta(const LitPoint& point,
     add(point, i, {s.wi, s.distance * kShadowEnd, s.irradiance * static_cast<float>(1 / chance), 0});
 }
 
+void DirectLighting::add_sun(std::span<const LitPoint> points, const Sun& sun, std::uint32_t number)
+{
+    Uninitialized<Vec3d, kMostSamples> toward;
+    draw_towards_sun()(sun, draw(points, ScatteringDimension::listed, number), toward.first(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i)
+        add(points[i], i, {toward[i], std::numeric_limits<double>::infinity(), sun.radiance, sun.pdf});
+}
+
+void DirectLighting::add_map(std::span<const LitPoint> points, const EnvironmentMap& map)
+{
+    const std::span<const Sample2> u = draw(points, ScatteringDimension::environment);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const EnvironmentMap::Sample s = map.sample(u[i]);
+        if (s.pdf > 0) add(points[i], i, {s.wi, std::numeric_limits<double>::infinity(), s.radiance, s.pdf});
+    }
+}
+
 void DirectLighting::add_emitter(std::span<const LitPoint> points,
                                  const Emitter& emitter,
                                  std::uint32_t number)
 {
     Uninitialized<Vec3d, kMostSamples> at;
-    Uninitialized<Sample2, kMostSamples> u;
     Uninitialized<EmitterSample, kMostSamples> drawn;
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < points.size(); ++i)
         at[i] = points[i].surface->point.position;
-        u[i] = points[i].of->two(dimension_of(points[i].scattering, ScatteringDimension::listed, number));
-    }
-    sample_many(emitter, at.first(points.size()), u.first(points.size()), drawn.first(points.size()));
+    sample_many(emitter,
+                at.first(points.size()),
+                draw(points, ScatteringDimension::listed, number),
+                drawn.first(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i)
         add(points[i], i, emitter, drawn[i], 1);
 }
@@ -107,11 +138,16 @@ void DirectLighting::add_environment_color(const LitPoint& point, std::size_t i)
 void DirectLighting::gather(std::span<const LitPoint> points, std::span<Rgb> added)
 {
     // One kind of light for all points, then the next: shadow rays to one light run alike.
-    const auto for_all = [&](auto&& add_to) {
+    const auto with = [&](auto&& add_all) {
         if (stop_.stop_requested()) return;
-        for (std::size_t i = 0; i < points.size(); ++i)
-            add_to(points[i], i);
+        add_all();
         arrive(added);
+    };
+    const auto for_all = [&](auto&& add_to) {
+        with([&] {
+            for (std::size_t i = 0; i < points.size(); ++i)
+                add_to(points[i], i);
+        });
     };
     for (const PreparedLight& light : scene_.lights())
         for_all([&](const LitPoint& point, std::size_t i) { add_delta(point, i, light, 1); });
@@ -119,30 +155,14 @@ void DirectLighting::gather(std::span<const LitPoint> points, std::span<Rgb> add
     constexpr std::uint32_t kMostNumbers =
         kOfScattering - static_cast<std::uint32_t>(ScatteringDimension::listed);
     std::uint32_t listed = 0;
-    for (const Sun& sun : scene_.suns()) {
-        const std::uint32_t number = listed++ % kMostNumbers;
-        for_all([&](const LitPoint& point, std::size_t i) {
-            const Vec3d wi = sample(
-                sun, point.of->two(dimension_of(point.scattering, ScatteringDimension::listed, number)));
-            add(point, i, {wi, std::numeric_limits<double>::infinity(), sun.radiance, sun.pdf});
-        });
-    }
-    if (scene_.light_tree().empty()) {
-        for (const Emitter& emitter : scene_.emitters()) {
-            const std::uint32_t number = listed++ % kMostNumbers;
-            if (stop_.stop_requested()) return;
-            add_emitter(points, emitter, number);
-            arrive(added);
-        }
-    } else {
+    for (const Sun& sun : scene_.suns())
+        with([&] { add_sun(points, sun, listed++ % kMostNumbers); });
+    if (scene_.light_tree().empty())
+        for (const Emitter& emitter : scene_.emitters())
+            with([&] { add_emitter(points, emitter, listed++ % kMostNumbers); });
+    else
         for_all([&](const LitPoint& point, std::size_t i) { add_picked(point, i); });
-    }
-    if (const EnvironmentMap* const map = scene_.environment_map())
-        for_all([&](const LitPoint& point, std::size_t i) {
-            const EnvironmentMap::Sample s =
-                map->sample(point.of->two(dimension_of(point.scattering, ScatteringDimension::environment)));
-            if (s.pdf > 0) add(point, i, {s.wi, std::numeric_limits<double>::infinity(), s.radiance, s.pdf});
-        });
+    if (const EnvironmentMap* const map = scene_.environment_map()) with([&] { add_map(points, *map); });
     if (!mis_ && !is_black(scene_.environment()))
         for_all([&](const LitPoint& point, std::size_t i) { add_environment_color(point, i); });
 }

@@ -11,6 +11,7 @@
 #include "renderer/integrators/radiance.h"
 #include "renderer/lights/sample_emitter.h"
 #include "renderer/math/uninitialized.h"
+#include "renderer/sampling/sampler_kernels.h"
 
 #include <span>
 #include <stop_token>
@@ -47,10 +48,15 @@ private:
         Rgb radiance;    // times cosine and material it is radiance towards the viewer, over pdf
         double pdf;      // 0: a light without extent, radiance is irradiance
     };
+    // The pair that each of the points has for this, in numbers_.
+    std::span<const Sample2>
+    draw(std::span<const LitPoint> points, ScatteringDimension which, std::uint32_t listed = 0);
     void add(const LitPoint& point, std::size_t i, const Arrival& arrival);
     void arrive(std::span<Rgb> added);
     void
     add(const LitPoint& point, std::size_t i, const Emitter& emitter, const EmitterSample& s, double chance);
+    void add_sun(std::span<const LitPoint> points, const Sun& sun, std::uint32_t number);
+    void add_map(std::span<const LitPoint> points, const EnvironmentMap& map);
     void add_emitter(std::span<const LitPoint> points, const Emitter& emitter, std::uint32_t number);
     void add_delta(const LitPoint& point, std::size_t i, const PreparedLight& light, double chance);
     void add_picked(const LitPoint& point, std::size_t i);
@@ -64,6 +70,8 @@ private:
     Uninitialized<Ray, kMostSamples> rays_;
     Uninitialized<Rgb, kMostSamples> light_;
     std::size_t point_[kMostSamples];
+    PairRun pairs_;
+    Uninitialized<Sample2, kMostSamples> numbers_;
 };
 
 // Share of a sample whose density is `own` where the other way would have drawn it with `other`.

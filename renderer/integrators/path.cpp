@@ -5,6 +5,7 @@
 #include "renderer/integrators/surface_step.h"
 #include "renderer/math/uninitialized.h"
 #include "renderer/sampling/hemisphere_kernels.h"
+#include "renderer/sampling/sampler_kernels.h"
 
 #include <algorithm>
 #include <limits>
@@ -175,7 +176,11 @@ private:
     {
         std::size_t diffuse = 0;
         for (std::size_t i = 0; i < turns_; ++i)
-            if (is_diffuse(turn_[i])) numbers_[diffuse++] = direction_numbers(*turn_[i].path);
+            if (is_diffuse(turn_[i])) {
+                const Path& path = *turn_[i].path;
+                pairs_.set(diffuse++, *path.of->sampler, path.of->number, direction_dimension(path));
+            }
+        draw_pairs()(pairs_, numbers_.first(diffuse));
         draw_in_hemisphere()(numbers_.first(diffuse), drawn_.first(diffuse));
         diffuse = 0;
         std::size_t kept = 0;
@@ -191,15 +196,15 @@ private:
     }
 
     static bool is_diffuse(const Turn& turn) { return turn.surface.bsdf->kind == BsdfKind::diffuse; }
-    static Sample2 direction_numbers(const Path& path)
+    static std::uint32_t direction_dimension(const Path& path)
     {
-        return path.of->two(dimension_of(path.depth, ScatteringDimension::direction));
+        return dimension_of(path.depth, ScatteringDimension::direction);
     }
     static BsdfSample draw(const Turn& turn)
     {
         const Path& path = *turn.path;
         const float u_lobe = path.of->one(dimension_of(path.depth, ScatteringDimension::lobe));
-        return sample(*turn.surface.bsdf, turn.wo, u_lobe, direction_numbers(path));
+        return sample(*turn.surface.bsdf, turn.wo, u_lobe, path.of->two(direction_dimension(path)));
     }
 
     bool pass(Turn& turn)
@@ -264,7 +269,9 @@ private:
     Uninitialized<LitPoint, kMostSamples> points_;
     Path* of_point_[kMostSamples];
     Uninitialized<Rgb, kMostSamples> added_;
-    Uninitialized<Sample2, kMostSamples> numbers_; // of turns at diffuse surfaces, to draw directions with
+    PairRun
+        pairs_; // of turns at diffuse surfaces: what they ask for, and the numbers to draw directions with
+    Uninitialized<Sample2, kMostSamples> numbers_;
     Uninitialized<Vec3f, kMostSamples> drawn_;
 };
 

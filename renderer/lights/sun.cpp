@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace renderer {
 
@@ -12,6 +13,7 @@ Sun prepare_sun(const SunLight& light)
 {
     Sun sun;
     sun.toward = -normalize(light.direction);
+    std::tie(sun.across, sun.upward) = basis_around(sun.toward);
     const double half_sine = sin_cos_deg(light.angular_radius_deg / 2).first;
     sun.one_minus_cosine = 2 * half_sine * half_sine;
     const double within =
@@ -29,8 +31,7 @@ Vec3d sample(const Sun& sun, Sample2 u)
     const double off = static_cast<double>(u.u0) * sun.one_minus_cosine;
     const double sine = std::sqrt(std::max(0.0, off * (2 - off)));
     const auto [s, c] = sin_cos(2 * kPi * static_cast<double>(u.u1));
-    const auto [x, y] = basis_around(sun.toward);
-    return normalize(sun.toward * (1 - off) + (x * c + y * s) * sine);
+    return normalize(sun.toward * (1 - off) + (sun.across * c + sun.upward * s) * sine);
 }
 
 } // namespace renderer

@@ -13,6 +13,7 @@ namespace renderer {
 
 struct Sun {
     Vec3d toward{};              // unit, to its centre
+    Vec3d across{}, upward{};    // unit, at right angles to that and to one another
     double one_minus_cosine = 0; // of its angular radius
     Rgb radiance{};
     double pdf = 0; // of every direction that sample() draws, per steradian

@@ -55,9 +55,9 @@ constexpr T max_component(Vec3<T> v)
 }
 
 template <typename T>
-constexpr Vec3<T> abs(Vec3<T> v)
+Vec3<T> abs(Vec3<T> v)
 {
-    return {v.x < 0 ? -v.x : v.x, v.y < 0 ? -v.y : v.y, v.z < 0 ? -v.z : v.z};
+    return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
 }
 
 // Euclidean length; scaled first, so that neither 1e-300 nor 1e300 under- or overflows. 0 for the zero

@@ -102,9 +102,9 @@ float PixelSampler::sample_1d(std::uint32_t sample, std::uint32_t dimension) con
     return to_unit(owen_scramble(x, seeds.x));
 }
 
-Sample2 PixelSampler::sample_2d(std::uint32_t sample, std::uint32_t dimension) const
+Sample2 sample_pair(std::uint64_t pixel_key, std::uint32_t sample, std::uint32_t dimension)
 {
-    const Seeds seeds = seeds_of(pixel_key_, dimension);
+    const Seeds seeds = seeds_of(pixel_key, dimension);
     const std::uint32_t x = scramble_reversed(reverse_bits(sample), seeds.shuffle);
     const Pair reversed = reverse_bits(Pair{x, second_from_first(x)});
     const Pair drawn =

@@ -22,6 +22,9 @@ struct Sample2 {
     float u0{}, u1{};
 };
 
+// A pair that is stratified together, for the pixel that the key stands for; see PixelSampler.
+Sample2 sample_pair(std::uint64_t pixel_key, std::uint32_t sample, std::uint32_t dimension);
+
 class PixelSampler {
 public:
     PixelSampler(std::uint64_t seed, std::uint32_t pixel_x, std::uint32_t pixel_y);
@@ -29,7 +32,12 @@ public:
     float sample_1d(std::uint32_t sample, std::uint32_t dimension) const;
     // A pair that is stratified together; 1-D and 2-D numbers of one dimension are not independent, so a
     // dimension is used for either.
-    Sample2 sample_2d(std::uint32_t sample, std::uint32_t dimension) const;
+    Sample2 sample_2d(std::uint32_t sample, std::uint32_t dimension) const
+    {
+        return sample_pair(pixel_key_, sample, dimension);
+    }
+
+    std::uint64_t key() const { return pixel_key_; } // of seed and pixel: what sampler_kernels.h works with
 
 private:
     std::uint64_t pixel_key_;
