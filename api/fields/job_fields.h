@@ -139,7 +139,7 @@ template <typename V, Sees<renderer::AccelerationSettings> X>
 void fields(V& v, X& acceleration)
 {
     v.group("bvh", "bounding volume hierarchies", [&](auto& bvh) {
-        bvh.word("split", acceleration.split, "how nodes are divided");
+        bvh.word("split", acceleration.split, "how nodes are divided; if not given, as pays, mesh by mesh");
         bvh.word("width", acceleration.width, "children of a node within a mesh: eight, or two");
         bvh.word("levels", acceleration.levels, "trees over the objects and within each mesh, or fewer");
     });

@@ -166,7 +166,8 @@ template <>
 WordTable words_for<BvhSplit>()
 {
     static constexpr std::array words{enumerator("sah", BvhSplit::sah),
-                                      enumerator("midpoint", BvhSplit::midpoint)};
+                                      enumerator("midpoint", BvhSplit::midpoint),
+                                      enumerator("spatial", BvhSplit::spatial)};
     return words;
 }
 

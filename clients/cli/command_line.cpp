@@ -149,9 +149,10 @@ void add_render(CommandLine& words)
         options.tile_px,
         "side of a tile in pixels (default: as the scene says, else 16); the picture does not depend on it");
     const std::map<std::string, renderer::BvhSplit> splits{{"sah", renderer::BvhSplit::sah},
-                                                           {"midpoint", renderer::BvhSplit::midpoint}};
+                                                           {"midpoint", renderer::BvhSplit::midpoint},
+                                                           {"spatial", renderer::BvhSplit::spatial}};
     command->add_option("--split", options.split, "how trees over triangles are split; for measuring")
-        ->transform(CLI::CheckedTransformer(splits).description("sah|midpoint"));
+        ->transform(CLI::CheckedTransformer(splits).description("sah|midpoint|spatial"));
     add_quiet(*command, options.quiet);
 }
 

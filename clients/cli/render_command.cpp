@@ -59,9 +59,8 @@ std::shared_ptr<const renderer::Scene> prepare_scene(LocalJob& job,
 {
     const renderer::RenderSettings& settings = job.request.settings;
     std::vector<std::shared_ptr<const renderer::PreparedMesh>> prepared;
-    for (renderer::Mesh& mesh : job.meshes) {
-        prepared.push_back(
-            renderer::prepare_mesh(std::move(mesh), mesh_tree(settings.acceleration), pool, stop));
+    for (std::size_t i = 0; i < job.meshes.size(); ++i) {
+        prepared.push_back(renderer::prepare_mesh(std::move(job.meshes[i]), plan.mesh_trees[i], pool, stop));
         if (!prepared.back()) interrupted();
     }
     return renderer::prepare(job.assumed, plan, prepared, settings, pool, stop, job.images);

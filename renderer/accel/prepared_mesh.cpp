@@ -47,6 +47,8 @@ std::shared_ptr<const PreparedMesh> prepare_run(std::shared_ptr<const Mesh> mesh
     switch (tree) {
     case MeshTree::wide_sah:
         return prepared(MeshBvh::build(*mesh, run, BvhSplit::sah, pool, stop));
+    case MeshTree::wide_spatial:
+        return prepared(MeshBvh::build(*mesh, run, BvhSplit::spatial, pool, stop));
     case MeshTree::wide_midpoint:
         return prepared(MeshBvh::build(*mesh, run, BvhSplit::midpoint, pool, stop));
     case MeshTree::binary_sah:
@@ -66,6 +68,15 @@ prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, const std::stop_token& 
 {
     const TriangleRun all{0, static_cast<std::uint32_t>(mesh.triangles.size())};
     return prepare_run(std::make_shared<const Mesh>(std::move(mesh)), all, true, tree, pool, stop);
+}
+
+std::shared_ptr<const PreparedMesh> prepare_again(const std::shared_ptr<const PreparedMesh>& prepared,
+                                                  MeshTree tree,
+                                                  ThreadPool& pool,
+                                                  const std::stop_token& stop)
+{
+    const TriangleRun all{0, static_cast<std::uint32_t>(mesh_of(*prepared).triangles.size())};
+    return prepare_run(prepared->mesh(), all, true, tree, pool, stop);
 }
 
 std::shared_ptr<const PreparedMesh> prepare_part(const std::shared_ptr<const PreparedMesh>& whole,

@@ -25,6 +25,12 @@ class PreparedMesh;
 std::shared_ptr<const PreparedMesh>
 prepare_mesh(Mesh mesh, MeshTree tree, ThreadPool& pool, const std::stop_token& stop = {});
 
+// The same mesh with another tree; the arrays are shared.
+std::shared_ptr<const PreparedMesh> prepare_again(const std::shared_ptr<const PreparedMesh>& prepared,
+                                                  MeshTree tree,
+                                                  ThreadPool& pool,
+                                                  const std::stop_token& stop = {});
+
 // Only the triangles of `part`, a run of the whole mesh's; the arrays stay shared with `whole`, and
 // primitives keep the numbers that they have there.
 std::shared_ptr<const PreparedMesh> prepare_part(const std::shared_ptr<const PreparedMesh>& whole,

@@ -1,11 +1,10 @@
 #include "renderer/accel/triangle_items.h"
 
 #include "renderer/accel/ray_run.h"
+#include "renderer/accel/triangle_part.h"
 #include "renderer/geometry/triangle.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <vector>
 
 namespace renderer {
@@ -18,22 +17,6 @@ struct Share {
     std::size_t kept = 0;
     Bounds3f bounds;
 };
-
-// The floats on either side of a place; the place itself where it is one.
-Vec3f round_down(Vec3d p)
-{
-    const auto down = [](double x) {
-        const auto nearest = static_cast<float>(x);
-        return static_cast<double>(nearest) > x
-                   ? std::nextafter(nearest, -std::numeric_limits<float>::infinity())
-                   : nearest;
-    };
-    return {down(p.x), down(p.y), down(p.z)};
-}
-Vec3f round_up(Vec3d p)
-{
-    return -round_down(-p);
-}
 
 // As take(), of corners that are more than floats.
 Share take_with_residuals(const Mesh& mesh, std::uint32_t first, std::uint32_t end, BuildItem<float>* to)

@@ -35,13 +35,14 @@ struct QualitySettings {
 };
 inline constexpr std::uint32_t kDefaultSamples = 64; // where quality names neither samples nor time
 
-enum class BvhSplit : std::uint8_t { sah, midpoint };
+// Where a run of triangles is cut in two: spatial also through triangles, which then lie on both sides.
+enum class BvhSplit : std::uint8_t { sah, midpoint, spatial };
 enum class BvhWidth : std::uint8_t { wide, binary };     // children of a node within a mesh: eight, or two
 enum class BvhLevels : std::uint8_t { two, mesh, none }; // trees over objects and within meshes, or fewer
 
 // For measuring only; no member changes the picture.
 struct AccelerationSettings {
-    BvhSplit split = BvhSplit::sah;
+    std::optional<BvhSplit> split; // none: as pays, mesh by mesh
     BvhWidth width = BvhWidth::wide;
     BvhLevels levels = BvhLevels::two;
     bool bounds = false;       // where no tree is over the objects: ask each one's box first
@@ -51,14 +52,25 @@ struct AccelerationSettings {
 };
 
 // What is built over the triangles of a mesh.
-enum class MeshTree : std::uint8_t { wide_sah, wide_midpoint, binary_sah, binary_midpoint, none };
-inline constexpr std::size_t kMeshTrees = 5;
+enum class MeshTree : std::uint8_t {
+    wide_sah,
+    wide_midpoint,
+    wide_spatial,
+    binary_sah,
+    binary_midpoint,
+    none
+};
+inline constexpr std::size_t kMeshTrees = 6;
+
+// Leaves of wide_spatial hold at most so many times as many triangles as there are.
+inline constexpr double kMostReferences = 1.3;
 
 constexpr MeshTree mesh_tree(const AccelerationSettings& acceleration)
 {
     if (acceleration.levels == BvhLevels::none) return MeshTree::none;
-    const bool sah = acceleration.split == BvhSplit::sah;
+    const bool sah = acceleration.split != BvhSplit::midpoint;
     if (acceleration.width == BvhWidth::binary) return sah ? MeshTree::binary_sah : MeshTree::binary_midpoint;
+    if (acceleration.split == BvhSplit::spatial) return MeshTree::wide_spatial;
     return sah ? MeshTree::wide_sah : MeshTree::wide_midpoint;
 }
 

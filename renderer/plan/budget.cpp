@@ -3,6 +3,7 @@
 #include "renderer/description/textured_values.h"
 #include "renderer/parallel/thread_pool.h"
 #include "renderer/plan/joined_objects.h"
+#include "renderer/plan/mesh_trees.h"
 
 #include <algorithm>
 #include <array>
@@ -31,6 +32,12 @@ constexpr std::uint64_t kResidualBytesPerVertex = 12, kResidualBytesPerTriangle 
 // Three corners of their own, indices, and where it came from; residuals.
 constexpr std::uint64_t kJoinedBytesPerTriangle =
     3 * 12 + 12 + 32 + 3 * kResidualBytesPerVertex + kResidualBytesPerTriangle;
+
+std::uint64_t most_references(std::uint64_t triangles, MeshTree tree)
+{
+    if (tree != MeshTree::wide_spatial) return triangles;
+    return static_cast<std::uint64_t>(static_cast<double>(triangles) * kMostReferences);
+}
 
 // Sums are given back before the layers' means are made (film/film.h: finish), and what is encoded and kept of a picture afterwards
 // takes less than they did.
@@ -107,23 +114,30 @@ SkyBytes sky_bytes(const AtmosphereDescription& a)
 
 } // namespace
 
-std::uint64_t tree_bytes(std::uint64_t triangles)
+std::uint64_t tree_bytes(std::uint64_t triangles, MeshTree tree)
 {
-    return triangles * kTreeBytesPerTriangle;
+    return most_references(triangles, tree) * kTreeBytesPerTriangle;
 }
 
-std::uint64_t tree_building_bytes(std::uint64_t triangles)
+std::uint64_t tree_building_bytes(std::uint64_t triangles, MeshTree tree)
 {
-    return triangles * kBuildingBytesPerTriangle;
+    return most_references(triangles, tree) * kBuildingBytesPerTriangle;
 }
 
-void add_mesh(Budget& budget, const MeshFacts& mesh, const MeshUse& use)
+std::uint64_t rendered_pixels(const ImageSettings& image)
+{
+    return image.region ? std::uint64_t{image.region->width} * image.region->height
+                        : std::uint64_t{image.width_px} * image.height_px;
+}
+
+void add_mesh(Budget& budget, const MeshFacts& mesh, const MeshUse& use, MeshTree tree)
 {
     const MeshUse kept = mesh.is_shared ? MeshUse{true, true, true} : use;
     budget.triangles += mesh.triangles;
-    budget.mesh_bytes += array_bytes(mesh, kept) + tree_bytes(mesh.triangles);
-    if (mesh.has_residuals) budget.mesh_bytes += mesh.triangles * kResidualBytesPerTriangle;
-    budget.building_bytes = std::max(budget.building_bytes, tree_building_bytes(mesh.triangles));
+    budget.mesh_bytes += array_bytes(mesh, kept) + tree_bytes(mesh.triangles, tree);
+    if (mesh.has_residuals)
+        budget.mesh_bytes += most_references(mesh.triangles, tree) * kResidualBytesPerTriangle;
+    budget.building_bytes = std::max(budget.building_bytes, tree_building_bytes(mesh.triangles, tree));
     if (kept.materials) budget.texture_bytes += mesh.image_bytes;
     if (use.materials) budget.texture_bytes += mesh.image_bytes / 3; // the levels, which are made for a scene
 }
@@ -176,8 +190,7 @@ Budget predict(const SceneDescription& scene,
 {
     Budget b;
     const ImageSettings& image = settings.image;
-    b.pixels = image.region ? std::uint64_t{image.region->width} * image.region->height
-                            : std::uint64_t{image.width_px} * image.height_px;
+    b.pixels = rendered_pixels(image);
     b.film_bytes = b.pixels * film_bytes_per_pixel(image.layers) + merge_bytes(settings.acceleration);
     b.mesh_bytes = scene.objects.size() * kBytesPerObject + tree_bytes(triangles_of_parts(scene, meshes));
     const std::uint64_t joined = most_joined_triangles(scene, meshes);
@@ -186,8 +199,9 @@ Budget predict(const SceneDescription& scene,
         b.mesh_bytes += emitters_of(object, scene, meshes) * kEmitterBytes;
     b.building_bytes = std::max(scene.objects.size() * kInstanceBuildingBytes, tree_building_bytes(joined));
     const std::vector<MeshUse> uses = uses_of(scene, meshes);
+    const MeshTrees trees(scene, settings);
     for (std::size_t i = 0; i < meshes.size(); ++i)
-        add_mesh(b, meshes[i], uses[i]);
+        add_mesh(b, meshes[i], uses[i], trees.of(meshes[i].triangles));
     if (const auto* const sky =
             scene.environment ? std::get_if<ImageEnvironment>(&*scene.environment) : nullptr;
         sky != nullptr && sky->image < images.size())

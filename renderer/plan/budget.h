@@ -26,9 +26,11 @@ inline constexpr unsigned kUnitsAThread = 4;
 unsigned
 threads_of(const AccelerationSettings& settings); // that a render takes: as asked, or every usable core
 
+std::uint64_t rendered_pixels(const ImageSettings& image); // of its region
+
 // A tree over so many triangles: its nodes and leaves, and what is held beside them at most while it is built.
-std::uint64_t tree_bytes(std::uint64_t triangles);
-std::uint64_t tree_building_bytes(std::uint64_t triangles);
+std::uint64_t tree_bytes(std::uint64_t triangles, MeshTree tree = MeshTree::wide_sah);
+std::uint64_t tree_building_bytes(std::uint64_t triangles, MeshTree tree = MeshTree::wide_sah);
 // The same for each object of the upper level.
 inline constexpr std::uint64_t kInstanceBytes = 468, kInstanceBuildingBytes = 150;
 
@@ -50,7 +52,7 @@ Budget predict(const SceneDescription& scene,
                std::span<const ImageFacts> images = {});
 
 // One mesh with its tree, without those of its parts; of a shared one all, of another what the scene asks of it.
-void add_mesh(Budget& budget, const MeshFacts& mesh, const MeshUse& use);
+void add_mesh(Budget& budget, const MeshFacts& mesh, const MeshUse& use, MeshTree tree);
 
 // One picture of the scene's, with its levels.
 void add_image(Budget& budget, const ImageFacts& image);

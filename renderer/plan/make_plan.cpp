@@ -6,6 +6,7 @@
 #include "renderer/plan/choose_transport.h"
 #include "renderer/plan/explain_numerics.h"
 #include "renderer/plan/joined_objects.h"
+#include "renderer/plan/mesh_trees.h"
 #include "renderer/plan/plan.h"
 #include "renderer/plan/predict_cost.h"
 #include "renderer/plan/world_frame.h"
@@ -39,8 +40,12 @@ std::variant<Plan, std::vector<Fault>> make_plan(const AssumedScene& scene,
     plan.joined = choose_joined(description, meshes, plan.world_origin);
     plan.precision = corner_precision(description, meshes);
     plan.layers = settings.image.layers;
+    const MeshTrees trees(description, settings);
+    for (const MeshFacts& mesh : meshes)
+        plan.mesh_trees.push_back(trees.of(mesh.triangles));
     plan.prediction = predict_cost(description, settings, budget, transport);
     plan.models = explain(scene, meshes, settings, budget, plan.joined, std::move(transport));
+    trees.explain(meshes, plan.models);
     plan.sky = choose_sky(description, meshes, plan.integrator, plan.models);
     plan.exposure_ev = choose_exposure(settings.image, description, plan.integrator, plan.models);
     explain_numerics(description, meshes, settings.image, plan.world_origin, plan.models);

@@ -105,10 +105,11 @@ struct Plan {
     bool picks_lights = false; // by a tree, one a point; else each is asked
     Vec3d world_origin{};      // of the frame that is traced in, in the world: see world_frame.h
     JoinedObjects joined;
-    std::optional<SkyPlan> sky; // where the environment is an atmosphere
-    double exposure_ev = 0;     // of a picture
-    LayerSet layers{};          // to keep beside it
-    std::string precision;      // of the meshes' corners: "float", "double" or "mixed"
+    std::vector<MeshTree> mesh_trees; // of each mesh, to be prepared with; its parts have plain ones
+    std::optional<SkyPlan> sky;       // where the environment is an atmosphere
+    double exposure_ev = 0;           // of a picture
+    LayerSet layers{};                // to keep beside it
+    std::string precision;            // of the meshes' corners: "float", "double" or "mixed"
     ModelReport models;
     Prediction prediction;
 };

@@ -6,11 +6,6 @@ namespace renderer {
 
 namespace {
 
-// A ray with its shading on one thread of a processor of the 2020s; scenes differ by several times either way.
-constexpr double kSecondsARay = 0.7e-6;
-// Scatterings of a path that roulette ends, at albedos about one half.
-constexpr double kUsualScatterings = 3;
-
 // Of a core, what an atmosphere's tables take where light is scattered more than once: see sky/sky.h.
 double table_seconds(const SceneDescription& scene, const TransportChoice& transport)
 {
@@ -43,6 +38,13 @@ double rays_a_sample(const SceneDescription& scene, const TransportChoice& trans
 
 } // namespace
 
+std::uint64_t most_camera_rays(const RenderSettings& settings)
+{
+    const QualitySettings& quality = settings.quality;
+    return rendered_pixels(settings.image) *
+           quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);
+}
+
 Prediction predict_cost(const SceneDescription& scene,
                         const RenderSettings& settings,
                         const Budget& budget,
@@ -50,9 +52,7 @@ Prediction predict_cost(const SceneDescription& scene,
 {
     Prediction p;
     const QualitySettings& quality = settings.quality;
-    const std::uint64_t samples =
-        quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);
-    p.camera_rays = budget.pixels * samples;
+    p.camera_rays = most_camera_rays(settings);
     p.rays = static_cast<double>(p.camera_rays) * rays_a_sample(scene, transport);
     p.memory_bytes = memory_bytes(budget);
     p.threads = threads_of(settings.acceleration);

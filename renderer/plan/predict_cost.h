@@ -9,6 +9,14 @@
 
 namespace renderer {
 
+// A ray with its shading on one thread of a processor of the 2020s; scenes differ by several times either way.
+inline constexpr double kSecondsARay = 0.7e-6;
+// Scatterings of a path that roulette ends, at albedos about one half.
+inline constexpr double kUsualScatterings = 3;
+
+// As many as `quality` allows.
+std::uint64_t most_camera_rays(const RenderSettings& settings);
+
 Prediction predict_cost(const SceneDescription& scene,
                         const RenderSettings& settings,
                         const Budget& budget,

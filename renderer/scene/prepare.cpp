@@ -295,7 +295,7 @@ private:
     const Plan& plan_;
     Vec3d world_origin_;
     std::span<const SharedMesh> meshes_;
-    MeshTree tree_; // as all of `meshes` were prepared
+    MeshTree tree_; // of parts and shapes
     ThreadPool& pool_;
     const std::stop_token& stop_;
     SharedMesh box_, rectangle_;
@@ -350,7 +350,10 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
 
     InstanceTree tree =
         acceleration.levels == BvhLevels::two
-            ? InstanceTree(std::move(made.instances), acceleration.split, pool, std::move(made.joined))
+            ? InstanceTree(std::move(made.instances),
+                           acceleration.split.value_or(BvhSplit::sah),
+                           pool,
+                           std::move(made.joined))
             : InstanceTree::list(std::move(made.instances), acceleration.bounds, std::move(made.joined));
     made.geometry.bvh_bytes += tree.size_bytes();
     made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds(), plan.world_origin);

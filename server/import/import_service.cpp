@@ -42,7 +42,7 @@ std::string main_key(const ImportRequest& request)
 // An asset by itself, as /info looks at it.
 ImportRequest bare_request(const std::string& digest)
 {
-    return {"", digest, {}, renderer::MeshTree::wide_sah, false};
+    return {"", digest, {}, false};
 }
 
 api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const KnownImport& known)
@@ -73,6 +73,18 @@ std::shared_ptr<const renderer::MeshFacts> facts_of_shared(const renderer::Mesh&
 ImportFailure not_a_mesh(const api::AssetInfo::ImageInfo& picture)
 {
     return {"not_a_mesh", "the file is a picture (" + picture.format + "), not a mesh"};
+}
+
+renderer::MeshTree tree_for(const ImportRequest& request, const renderer::MeshFacts& facts)
+{
+    return request.tree_for ? request.tree_for(facts.triangles) : renderer::MeshTree::wide_sah;
+}
+
+// The mesh with any tree; nullptr where there is none in memory.
+const std::shared_ptr<const renderer::PreparedMesh>* any_prepared(const KnownImport& known)
+{
+    const auto found = std::ranges::find_if(known.prepared, [](const auto& mesh) { return mesh != nullptr; });
+    return found == known.prepared.end() ? nullptr : &*found;
 }
 
 } // namespace
@@ -178,17 +190,56 @@ struct ImportService::State {
         return ImportFailure{"asset_damaged", api::damaged_asset_words(damage.digest)};
     }
 
-    // From the disk into the cache, if it was kept there.
-    std::optional<PreparedAsset> load(const ImportRequest& request, renderer::ThreadPool& pool)
+    // From the disk into the cache, if it was kept there: with the tree that is asked for, if that is there too.
+    void load(const ImportRequest& request, renderer::ThreadPool& pool)
     {
-        if (!stored) return std::nullopt;
-        auto known = stored->load(main_key(request), request.files, request.tree, pool);
-        if (!known) return std::nullopt;
-        const auto& mesh = known->prepared[static_cast<std::size_t>(request.tree)];
-        known->facts = facts_of_shared(mesh_of(*mesh));
-        PreparedAsset prepared{mesh, known->figures->notes, known->facts};
-        remember(std::move(*known));
+        if (!stored) return;
+        std::optional<renderer::MeshTree> asked;
+        using enum renderer::MeshTree;
+        for (const renderer::MeshTree tree : {wide_sah, wide_spatial, wide_midpoint}) {
+            if (asked && tree != *asked) continue;
+            auto known = stored->load(main_key(request), request.files, tree, pool);
+            if (!known) continue;
+            known->facts = facts_of_shared(mesh_of(*known->prepared[static_cast<std::size_t>(tree)]));
+            asked = tree_for(request, *known->facts);
+            remember(std::move(*known));
+            if (tree == *asked) return;
+        }
+    }
+
+    // What is in the cache, with another tree than is asked for.
+    std::optional<KnownImport> known_otherwise(const ImportRequest& request)
+    {
+        const std::lock_guard lock(mutex);
+        const KnownImport* known = cache.find(main_key(request), request.files);
+        if (!known || !any_prepared(*known)) return std::nullopt;
+        return *known;
+    }
+
+    // With the tree that is asked for, if it may be built; what is known is remembered.
+    template <typename Build>
+    PreparedAsset prepare(const ImportRequest& request, KnownImport known, const Build& build)
+    {
+        PreparedAsset prepared{nullptr, known.figures->notes, known.facts};
+        const renderer::MeshTree tree = tree_for(request, *known.facts);
+        if (!request.may_build || request.may_build(*known.facts)) {
+            prepared.mesh = build(tree);
+            if (!prepared.mesh) prepared = {}; // stopped
+        }
+        known.prepared[static_cast<std::size_t>(tree)] = prepared.mesh;
+        if (stored && prepared.mesh) stored->keep(known, tree);
+        remember(std::move(known));
         return prepared;
+    }
+    PreparedAsset with_its_tree(const ImportRequest& request,
+                                KnownImport known,
+                                renderer::ThreadPool& pool,
+                                const std::stop_token& stop)
+    {
+        const std::shared_ptr<const renderer::PreparedMesh> other = *any_prepared(known);
+        return prepare(request, std::move(known), [&](renderer::MeshTree tree) {
+            return prepare_again(other, tree, pool, stop);
+        });
     }
 
     void remember(KnownImport known)
@@ -226,12 +277,12 @@ std::variant<PreparedAsset, ImportFailure>
 ImportService::import(const ImportRequest& request, renderer::ThreadPool& pool, const std::stop_token& stop)
 try {
     using Answer = std::variant<PreparedAsset, ImportFailure>;
-    const auto tree = static_cast<std::size_t>(request.tree);
     const auto answer = [&](const KnownImport& known) -> std::optional<Answer> {
         if (known.failure) return *known.failure;
         if (known.picture_figures) return not_a_mesh(*known.picture_figures);
-        if (known.prepared[tree])
-            return PreparedAsset{known.prepared[tree], known.figures->notes, known.facts};
+        if (!known.facts) return std::nullopt;
+        if (const auto& mesh = known.prepared[static_cast<std::size_t>(tree_for(request, *known.facts))])
+            return PreparedAsset{mesh, known.figures->notes, known.facts};
         return std::nullopt;
     };
     bool stopped = false;
@@ -239,7 +290,11 @@ try {
     if (stopped) return PreparedAsset{};
     const State::Flight flight(*state_, main_key(request));
 
-    if (auto kept = state_->load(request, pool)) return std::move(*kept);
+    if (!state_->known_otherwise(request)) state_->load(request, pool);
+    if (auto known = state_->known_otherwise(request)) {
+        if (auto found = answer(*known)) return std::move(*found);
+        return state_->with_its_tree(request, std::move(*known), pool, stop);
+    }
 
     KnownImport known{main_key(request), {}, {}, {}, {}, {}};
     bool repeatable = false;
@@ -259,15 +314,9 @@ try {
     if (!asset) return PreparedAsset{};
     known.figures = mesh_figures(*asset);
     known.facts = facts_of_shared(asset->mesh);
-    PreparedAsset prepared{nullptr, known.figures->notes, known.facts};
-    if (!request.may_build || request.may_build(*known.facts)) {
-        prepared.mesh = prepare_mesh(std::move(asset->mesh), request.tree, pool, stop);
-        if (!prepared.mesh) prepared = {}; // stopped
-    }
-    known.prepared[tree] = prepared.mesh;
-    if (state_->stored && prepared.mesh) state_->stored->keep(known, request.tree);
-    state_->remember(std::move(known));
-    return prepared;
+    return state_->prepare(request, std::move(known), [&](renderer::MeshTree tree) {
+        return prepare_mesh(std::move(asset->mesh), tree, pool, stop);
+    });
 } catch (const std::bad_alloc&) {
     return out_of_memory();
 }
@@ -281,7 +330,7 @@ try {
         if (known.picture) return known.picture;
         return std::nullopt;
     };
-    const ImportRequest request{name, digest, {}, renderer::MeshTree::wide_sah, true};
+    const ImportRequest request{name, digest, {}, true};
     bool stopped = false;
     if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return std::move(*found);
     if (stopped) return ImportedPixels();

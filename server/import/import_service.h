@@ -45,8 +45,9 @@ struct ImportRequest {
     std::string name;                         // as the scene calls it: its extension may tell the format
     std::string digest;                       // of the main file
     std::map<std::string, std::string> files; // the job's files, name -> digest: the only names that resolve
-    renderer::MeshTree tree = renderer::MeshTree::wide_sah;
-    bool is_picture = false; // is wanted; then files and tree do not count
+    bool is_picture = false;                  // is wanted; then files and tree do not count
+    // Of a mesh of so many triangles. None: wide_sah.
+    std::function<renderer::MeshTree(std::uint64_t triangles)> tree_for = nullptr;
     // Asked before a tree is built; where it says no there is none. None: always.
     std::function<bool(const renderer::MeshFacts&)> may_build = nullptr;
 };

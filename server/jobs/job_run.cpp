@@ -4,6 +4,7 @@
 #include "renderer/accel/prepared_mesh.h"
 #include "renderer/film/encode_picture.h"
 #include "renderer/plan/budget.h"
+#include "renderer/plan/mesh_trees.h"
 #include "renderer/plan/plan.h"
 #include "renderer/scene/scene.h"
 #include "server/jobs/job_problems.h"
@@ -83,24 +84,26 @@ std::variant<Imported, api::ProblemDetails, StoppedRun> import_meshes(const JobR
     if (!faults.empty()) return faults_problem(faults.take());
     const std::vector<renderer::MeshUse> uses =
         renderer::uses_of(scene, std::vector<renderer::MeshFacts>(scene.meshes.size()));
+    const renderer::MeshTrees trees(scene, run.request.settings);
     for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
         const auto with = [&](const renderer::MeshFacts& facts) {
             renderer::Budget sum = budget;
-            renderer::add_mesh(sum, facts, uses[i]);
+            renderer::add_mesh(sum, facts, uses[i], trees.of(facts.triangles));
             return sum;
         };
-        auto answer = tools.imports.import({.name = scene.meshes[i].name,
-                                            .digest = scene.meshes[i].digest,
-                                            .files = run.request.files,
-                                            .tree = renderer::mesh_tree(run.request.settings.acceleration),
-                                            .may_build =
-                                                [&](const renderer::MeshFacts& facts) {
-                                                    renderer::FaultList excess;
-                                                    renderer::check_budget(with(facts), tools.limits, excess);
-                                                    return excess.empty();
-                                                }},
-                                           tools.pool,
-                                           run.stop);
+        auto answer =
+            tools.imports.import({.name = scene.meshes[i].name,
+                                  .digest = scene.meshes[i].digest,
+                                  .files = run.request.files,
+                                  .tree_for = [&](std::uint64_t triangles) { return trees.of(triangles); },
+                                  .may_build =
+                                      [&](const renderer::MeshFacts& facts) {
+                                          renderer::FaultList excess;
+                                          renderer::check_budget(with(facts), tools.limits, excess);
+                                          return excess.empty();
+                                      }},
+                                 tools.pool,
+                                 run.stop);
         if (auto* failure = std::get_if<ImportFailure>(&answer)) {
             failed.emplace(i, std::move(*failure));
             continue;

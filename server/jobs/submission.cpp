@@ -19,15 +19,14 @@ std::vector<renderer::Fault> known_faults(const api::JobRequest& request, const 
     for (std::uint32_t i = 0; i < request.scene.meshes.size(); ++i) {
         auto known = imports.known_failure({.name = request.scene.meshes[i].name,
                                             .digest = request.scene.meshes[i].digest,
-                                            .files = request.files,
-                                            .tree = renderer::mesh_tree(request.settings.acceleration)});
+                                            .files = request.files});
         if (auto* failure = std::get_if<ImportFailure>(&known)) failed.emplace(i, std::move(*failure));
     }
     renderer::FaultList faults;
     add_faults(failed, request.scene, faults);
     for (const renderer::ImageReference& image : request.scene.images) {
         auto known = imports.known_failure(
-            {.name = image.name, .digest = image.digest, .files = {}, .tree = {}, .is_picture = true});
+            {.name = image.name, .digest = image.digest, .files = {}, .is_picture = true});
         if (auto* failure = std::get_if<ImportFailure>(&known)) add_fault(image, std::move(*failure), faults);
     }
     return faults.take();

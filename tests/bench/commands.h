@@ -28,6 +28,7 @@ struct LeaksOptions {
     double rays = 1e8;
     std::vector<std::string> meshes;
     std::string peer; // "embree" or none
+    std::string split = "sah";
     unsigned threads = 1;
 };
 void run_leaks(const LeaksOptions& options);

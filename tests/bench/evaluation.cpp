@@ -99,7 +99,7 @@ Subject together(const std::vector<NamedMesh>& meshes, const EvaluationOptions& 
 
 AccelerationSettings acceleration(BvhLevels levels, bool bounds = false, unsigned threads = 1)
 {
-    return {.levels = levels, .bounds = bounds, .threads = threads};
+    return {.split = BvhSplit::sah, .levels = levels, .bounds = bounds, .threads = threads};
 }
 
 AccelerationSettings
@@ -171,7 +171,7 @@ Subject larger(Subject subject)
 Figure threads(const Subject& scene, const EvaluationOptions& options)
 {
     const auto with = [](unsigned count, std::uint32_t tile_px) {
-        return AccelerationSettings{.threads = count, .tile_px = tile_px};
+        return AccelerationSettings{.split = BvhSplit::sah, .threads = count, .tile_px = tile_px};
     };
     constexpr std::uint32_t kOneTile = 4096;
     return {.name = "threads",

@@ -42,8 +42,8 @@ Ready make_ready(const Subject& subject, const AccelerationSettings& acceleratio
     std::vector<Mesh> meshes = subject.meshes;
     const Stopwatch watch(CLOCK_PROCESS_CPUTIME_ID);
     std::vector<std::shared_ptr<const PreparedMesh>> prepared;
-    for (Mesh& mesh : meshes)
-        prepared.push_back(prepare_mesh(std::move(mesh), mesh_tree(acceleration), pool));
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        prepared.push_back(prepare_mesh(std::move(meshes[i]), ready.plan.mesh_trees[i], pool));
     ready.scene = prepare(scene, ready.plan, prepared, ready.settings, pool);
     ready.prepare_cpu_s = watch.spent().cpu_s;
     return ready;

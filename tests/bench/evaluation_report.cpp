@@ -35,7 +35,7 @@ json acceleration_json(const AccelerationSettings& a)
                                : a.levels == BvhLevels::mesh ? "mesh"
                                                              : "none";
     return {{"bvh",
-             {{"split", a.split == BvhSplit::sah ? "sah" : "midpoint"},
+             {{"split", a.split == BvhSplit::midpoint ? "midpoint" : "sah"},
               {"width", a.width == BvhWidth::wide ? "wide" : "binary"},
               {"levels", levels}}},
             {"bounds", a.bounds},

@@ -24,12 +24,10 @@ public:
 
     std::string name() const override
     {
-        return std::string("Heliograph, ") + kernels_.name + (split_ == BvhSplit::sah ? "" : ", midpoint");
+        return std::string("Heliograph, ") + kernels_.name +
+               (split_ == BvhSplit::sah ? "" : ", " + split_name());
     }
-    std::string tree() const override
-    {
-        return split_ == BvhSplit::sah ? "Heliograph, sah" : "Heliograph, midpoint";
-    }
+    std::string tree() const override { return "Heliograph, " + split_name(); }
     bool high_quality() const override { return false; }
     BuildCost time_build(unsigned threads) const override
     {
@@ -109,6 +107,18 @@ private:
         return hits;
     }
 
+    std::string split_name() const
+    {
+        switch (split_) {
+        case BvhSplit::sah:
+            return "sah";
+        case BvhSplit::midpoint:
+            return "midpoint";
+        case BvhSplit::spatial:
+            return "spatial";
+        }
+        return {};
+    }
     TriangleRun all_triangles() const { return {0, static_cast<std::uint32_t>(mesh_.triangles.size())}; }
 
     const Mesh& mesh_;
@@ -118,6 +128,11 @@ private:
 };
 
 } // namespace
+
+BvhSplit split_named(const std::string& name)
+{
+    return name == "midpoint" ? BvhSplit::midpoint : name == "spatial" ? BvhSplit::spatial : BvhSplit::sah;
+}
 
 std::vector<std::unique_ptr<RayEngine>>
 make_heliograph_engines(const Mesh& mesh, BvhSplit split, bool every_kernel)

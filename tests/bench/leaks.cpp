@@ -243,8 +243,10 @@ void run_leaks(const LeaksOptions& options)
             const Bounds3f box = mesh.bounds();
             const float largest = std::max(max_abs(box.lower), max_abs(box.upper));
             const ClosedMesh closed(mesh, stand.as_floats ? 32 * 0x1p-23 * static_cast<double>(largest) : 0);
-            const auto bvh = *MeshBvh::build(
-                mesh, {0, static_cast<std::uint32_t>(mesh.triangles.size())}, BvhSplit::sah, pool);
+            const auto bvh = *MeshBvh::build(mesh,
+                                             {0, static_cast<std::uint32_t>(mesh.triangles.size())},
+                                             split_named(options.split),
+                                             pool);
             std::vector<std::unique_ptr<RayEngine>> peers;
             // In a frame of the mesh's own a peer would be asked what it was asked near the origin.
             if (options.peer == "embree" && (stand.as_floats || stand.at == Vec3d{}))

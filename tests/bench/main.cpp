@@ -53,6 +53,13 @@ void add_import(CLI::App& app)
     to.add_flag("--json", options->as_json, "figures as JSON");
 }
 
+void add_split(CLI::App& to, std::string& split)
+{
+    to.add_option("--split", split, "how our tree is built")
+        ->check(CLI::IsMember({"sah", "midpoint", "spatial"}))
+        ->capture_default_str();
+}
+
 void add_leaks(CLI::App& app)
 {
     Command command(
@@ -63,6 +70,7 @@ void add_leaks(CLI::App& app)
         ->capture_default_str();
     to.add_option("--mesh", options->meshes, "mesh files to aim at as well, where they are closed");
     to.add_option("--peer", options->peer, "engine to count beside ours")->check(CLI::IsMember({"embree"}));
+    add_split(to, options->split);
     to.add_option("--threads", options->threads, "threads that trace")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
@@ -114,9 +122,7 @@ void add_rays(CLI::App& app)
         ->delimiter(',')
         ->capture_default_str();
     to.add_option("--peer", options->peer, "engine to measure beside ours")->check(CLI::IsMember({"embree"}));
-    to.add_option("--split", options->split, "how our tree is built")
-        ->check(CLI::IsMember({"sah", "midpoint"}))
-        ->capture_default_str();
+    add_split(to, options->split);
     to.add_option("--threads", options->threads, "numbers of threads that build and trace: 1,2")
         ->check(CLI::Range(1, 1024))
         ->delimiter(',')

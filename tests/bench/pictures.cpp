@@ -86,8 +86,8 @@ Made make(const clients::JobSource& source, const PicturesOptions& options, rend
     job.request.settings = settings;
     renderer::Plan plan = clients::plan_of(job);
     std::vector<std::shared_ptr<const renderer::PreparedMesh>> meshes;
-    for (renderer::Mesh& mesh : job.meshes)
-        meshes.push_back(renderer::prepare_mesh(std::move(mesh), mesh_tree(settings.acceleration), pool));
+    for (std::size_t i = 0; i < job.meshes.size(); ++i)
+        meshes.push_back(renderer::prepare_mesh(std::move(job.meshes[i]), plan.mesh_trees[i], pool));
     auto scene = renderer::prepare(job.assumed, plan, meshes, settings, pool);
     return {std::move(plan), std::move(scene), settings};
 }

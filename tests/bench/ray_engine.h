@@ -43,6 +43,9 @@ public:
     trace(const RaySet& set, std::span<const FloatRay> rays, FoundHit* found = nullptr) const = 0;
 };
 
+// As `--split` names it: "sah", "midpoint" or "spatial".
+renderer::BvhSplit split_named(const std::string& name);
+
 // With the best kernel of this processor, or one engine a kernel, the best first. The mesh outlives them.
 std::vector<std::unique_ptr<RayEngine>>
 make_heliograph_engines(const renderer::Mesh& mesh, renderer::BvhSplit split, bool every_kernel);

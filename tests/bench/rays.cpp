@@ -153,7 +153,7 @@ void prepare_case(Case& c, const Mesh& native, double diagonal, const RaysOption
         c.scale = diagonal / diagonal_of(native);
         scale_mesh(c.mesh, c.scale);
     }
-    const BvhSplit split = options.split == "sah" ? BvhSplit::sah : BvhSplit::midpoint;
+    const BvhSplit split = split_named(options.split);
     c.engines = make_heliograph_engines(c.mesh, split, options.every_kernel);
     const std::size_t ours = c.engines.size();
     if (options.peer == "embree") {

@@ -49,7 +49,7 @@ TEST(Render, GivesTheSameBitsWhateverTheAcceleration)
     TestScene small = kitchen_sink();
     small.settings.image.region = PixelRect{24, 16, 24, 18}; // without trees the whole picture takes long
     const std::uint64_t want = digest(render_description(small).film);
-    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint})
+    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint, BvhSplit::spatial})
         for (const BvhWidth width : {BvhWidth::wide, BvhWidth::binary})
             for (const BvhLevels levels : {BvhLevels::two, BvhLevels::mesh, BvhLevels::none})
                 for (const bool bounds : {false, true}) {

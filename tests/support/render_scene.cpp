@@ -37,13 +37,14 @@ ReadyScene make_ready(const TestScene& test, ThreadPool& pool)
     for (const Mesh& mesh : test.meshes) {
         description.meshes.push_back({"mesh" + std::to_string(facts.size()), ""});
         facts.push_back(facts_of(mesh));
-        prepared.push_back(prepare_mesh(mesh, mesh_tree(test.settings.acceleration), pool));
     }
     const double aspect = static_cast<double>(test.settings.image.width_px) / test.settings.image.height_px;
     const AssumedScene assumed = assume_defaults(std::move(description), facts, aspect);
     auto plan = make_plan(assumed, facts, test.settings, Limits{});
     if (const auto* const faults = std::get_if<std::vector<Fault>>(&plan))
         throw std::runtime_error(faults->front().pointer + ": " + faults->front().detail);
+    for (std::size_t i = 0; i < test.meshes.size(); ++i)
+        prepared.push_back(prepare_mesh(test.meshes[i], std::get<Plan>(plan).mesh_trees[i], pool));
     ReadyScene ready{std::move(std::get<Plan>(plan)), nullptr};
     ready.scene = prepare(assumed, ready.plan, prepared, test.settings, pool, {}, test.images);
     return ready;

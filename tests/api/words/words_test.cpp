@@ -75,7 +75,7 @@ TEST(WordTables, HaveAWordForEachAlternative)
     expect_a_word_for_each<renderer::Projection>(4, 0);
     expect_a_word_for_each<renderer::MeterQuantity>(2, 0);
     expect_a_word_for_each<renderer::Tone>(3, 0);
-    expect_a_word_for_each<renderer::BvhSplit>(2, 0);
+    expect_a_word_for_each<renderer::BvhSplit>(3, 0);
     expect_a_word_for_each<renderer::BvhWidth>(2, 0);
     expect_a_word_for_each<renderer::BvhLevels>(3, 0);
 }

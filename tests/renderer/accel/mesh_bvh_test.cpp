@@ -33,14 +33,17 @@ TEST(MeshBvh, FindsTheSameHitAsBruteForce)
     Random random(1);
     int hits = 0;
     for (const Mesh& mesh : ten_meshes()) {
-        const MeshBvh sah = build(mesh), midpoint = build(mesh, BvhSplit::midpoint);
+        const MeshBvh sah = build(mesh), midpoint = build(mesh, BvhSplit::midpoint),
+                      spatial = build(mesh, BvhSplit::spatial);
         for (int i = 0; i < 10000 / kThinning; ++i) {
             const Ray ray = random_ray(random, mesh);
             const auto expected = sah.closest_hit_brute_force(ray);
             ASSERT_TRUE(same(sah.closest_hit(ray), expected)) << "sah, ray " << i;
             ASSERT_TRUE(same(midpoint.closest_hit(ray), expected)) << "midpoint, ray " << i;
+            ASSERT_TRUE(same(spatial.closest_hit(ray), expected)) << "spatial, ray " << i;
             ASSERT_EQ(sah.any_hit(ray), expected.has_value());
             ASSERT_EQ(midpoint.any_hit(ray), expected.has_value());
+            ASSERT_EQ(spatial.any_hit(ray), expected.has_value());
             hits += expected.has_value();
         }
     }
@@ -163,7 +166,7 @@ TEST(MeshBvh, PrefersTheLowestNumberAmongEquals)
     for (int copy = 0; copy < 5; ++copy)
         mesh.triangles.append(once);
     Random random(15);
-    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint}) {
+    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint, BvhSplit::spatial}) {
         const MeshBvh bvh = build(mesh, split);
         for (int i = 0; i < 1000; ++i) {
             const auto hit =
@@ -185,7 +188,8 @@ TEST(MeshBvh, KeepsItsHitsUnderEverySignOfZero)
         mesh.positions.push_back(renderer::to_float({place(), place(), place()}));
     for (std::uint32_t i = 0; i < 40; ++i)
         mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    const MeshBvh bvh = build(mesh), midpoint = build(mesh, BvhSplit::midpoint);
+    const MeshBvh bvh = build(mesh), midpoint = build(mesh, BvhSplit::midpoint),
+                  spatial = build(mesh, BvhSplit::spatial);
     const double steps[] = {0.0, -0.0, 0.0, -0.0, 1, -1};
     int hits = 0;
     for (int i = 0; i < 1000000 / kThinning; ++i) {
@@ -194,6 +198,7 @@ TEST(MeshBvh, KeepsItsHitsUnderEverySignOfZero)
         const auto expected = bvh.closest_hit_brute_force(ray);
         ASSERT_TRUE(same(bvh.closest_hit(ray), expected)) << i;
         ASSERT_TRUE(same(midpoint.closest_hit(ray), expected)) << i;
+        ASSERT_TRUE(same(spatial.closest_hit(ray), expected)) << i;
         hits += expected.has_value();
     }
     EXPECT_GT(hits, 100000 / kThinning);
@@ -256,7 +261,8 @@ TEST(MeshBvh, TakesMeshesOfAnySize)
         Mesh mesh = unit;
         for (auto& p : mesh.positions)
             p = p * std::ldexp(1.0f, exponent);
-        const MeshBvh bvh = build(mesh), midpoint = build(mesh, BvhSplit::midpoint);
+        const MeshBvh bvh = build(mesh), midpoint = build(mesh, BvhSplit::midpoint),
+                      spatial = build(mesh, BvhSplit::spatial);
         const double scale = std::ldexp(1.0, exponent);
         int hits = 0;
         for (int i = 0; i < 2000; ++i) {
@@ -265,6 +271,7 @@ TEST(MeshBvh, TakesMeshesOfAnySize)
             const auto hit = bvh.closest_hit(scaled);
             ASSERT_TRUE(same(hit, bvh.closest_hit_brute_force(scaled)));
             ASSERT_TRUE(same(hit, midpoint.closest_hit(scaled)));
+            ASSERT_TRUE(same(hit, spatial.closest_hit(scaled)));
             ASSERT_TRUE(same(hit, plain.closest_hit(ray))) << "a scale by a power of two changes nothing";
             hits += hit.has_value();
         }

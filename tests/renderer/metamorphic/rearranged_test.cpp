@@ -115,7 +115,7 @@ TEST(RearrangedScene, ShowsTheFirstOfTwoSurfacesInOnePlace)
     ObjectDescription again = objects[0];
     again.material = 1;
     objects.push_back(again);
-    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint})
+    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint, BvhSplit::spatial})
         for (const unsigned threads : {1u, 2u, 5u}) {
             test.settings.acceleration.split = split;
             EXPECT_EQ(digest(render_description(test, threads).film), want);

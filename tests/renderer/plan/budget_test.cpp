@@ -22,6 +22,14 @@ using renderer::SceneDescription;
 
 namespace {
 
+// Trees as they are where nothing else pays.
+RenderSettings plain()
+{
+    RenderSettings settings;
+    settings.acceleration.split = renderer::BvhSplit::sah;
+    return settings;
+}
+
 constexpr std::uint32_t kTriangles = 1'000'000;
 
 // A mesh whose parts lie within one another, each a triangle shorter than the one before; and "all", which is
@@ -49,7 +57,7 @@ SceneDescription scene_of(const std::vector<std::string>& parts)
 
 std::uint64_t mesh_bytes(const std::vector<std::string>& parts)
 {
-    return predict(scene_of(parts), std::vector{nested()}, {}).mesh_bytes;
+    return predict(scene_of(parts), std::vector{nested()}, plain()).mesh_bytes;
 }
 
 } // namespace
@@ -75,7 +83,7 @@ TEST(Budget, RefusesMorePartsThanMemoryHolds)
     for (int depth = 1; depth <= 256; ++depth)
         parts.push_back("part" + std::to_string(depth));
     FaultList faults;
-    check_budget(predict(scene_of(parts), std::vector{nested()}, {}), Limits{}, faults);
+    check_budget(predict(scene_of(parts), std::vector{nested()}, plain()), Limits{}, faults);
     const auto found = faults.take();
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].pointer, "/scene/objects");
@@ -111,10 +119,10 @@ TEST(Budget, GrowsByOneMeshAtATimeToThatOfAll)
 {
     const SceneDescription scene = scene_of({""});
     const std::vector<MeshFacts> meshes{nested(), nested()};
-    Budget budget = predict(scene, {}, {});
+    Budget budget = predict(scene, {}, plain());
     for (const MeshFacts& mesh : meshes)
-        add_mesh(budget, mesh, {true, true, true});
-    const Budget all = predict(scene, meshes, {});
+        add_mesh(budget, mesh, {true, true, true}, renderer::MeshTree::wide_sah);
+    const Budget all = predict(scene, meshes, plain());
     EXPECT_EQ(budget.triangles, all.triangles);
     EXPECT_EQ(budget.mesh_bytes, all.mesh_bytes);
     EXPECT_EQ(budget.film_bytes, all.film_bytes);
@@ -125,11 +133,11 @@ TEST(Budget, CountsOfASharedMeshAllAndOfAnotherWhatIsAskedFor)
     SceneDescription scene = scene_of({""});
     scene.objects[0].shading = renderer::Shading::flat;
     MeshFacts facts = nested();
-    const std::uint64_t bare = predict(scene, std::vector{facts}, {}).mesh_bytes;
+    const std::uint64_t bare = predict(scene, std::vector{facts}, plain()).mesh_bytes;
     facts.has_normals = facts.has_uvs = true;
-    EXPECT_EQ(predict(scene, std::vector{facts}, {}).mesh_bytes, bare);
+    EXPECT_EQ(predict(scene, std::vector{facts}, plain()).mesh_bytes, bare);
     facts.is_shared = true;
-    EXPECT_EQ(predict(scene, std::vector{facts}, {}).mesh_bytes, bare + facts.vertices * 20);
+    EXPECT_EQ(predict(scene, std::vector{facts}, plain()).mesh_bytes, bare + facts.vertices * 20);
 }
 
 TEST(Budget, CountsWhatTheLargestTreeTakesToBuildOnce)
@@ -137,8 +145,21 @@ TEST(Budget, CountsWhatTheLargestTreeTakesToBuildOnce)
     const SceneDescription scene = scene_of({""});
     MeshFacts small = nested();
     small.triangles = 1000;
-    const Budget budget = predict(scene, std::vector{small, nested(), small}, {});
+    const Budget budget = predict(scene, std::vector{small, nested(), small}, plain());
     EXPECT_EQ(budget.building_bytes, renderer::tree_building_bytes(kTriangles));
+}
+
+TEST(Budget, CountsTheMostThatASpatialTreeMayHold)
+{
+    const SceneDescription scene = scene_of({""});
+    const std::vector<MeshFacts> mesh{nested()};
+    RenderSettings settings = plain();
+    const Budget small = predict(scene, mesh, settings);
+    settings.acceleration.split = renderer::BvhSplit::spatial;
+    const Budget large = predict(scene, mesh, settings);
+    const auto more = static_cast<std::uint64_t>(0.3 * static_cast<double>(renderer::tree_bytes(kTriangles)));
+    EXPECT_EQ(large.mesh_bytes, small.mesh_bytes + more);
+    EXPECT_GT(large.building_bytes, small.building_bytes);
 }
 
 TEST(Budget, RefusesATreeThatCouldNotBeBuilt)
@@ -209,7 +230,7 @@ TEST(Budget, CountsWhatShinesOfMeshesAndShapes)
     MeshFacts lamp = nested();
     lamp.shining_triangles = 1000;
     const auto bytes = [&](const SceneDescription& scene) {
-        return predict(scene, std::vector{lamp}, {}).mesh_bytes;
+        return predict(scene, std::vector{lamp}, plain()).mesh_bytes;
     };
     const std::uint64_t dark = mesh_bytes({""}), one = bytes(scene_of({""})) - dark;
     EXPECT_GT(one, 1000u * 400);
@@ -247,9 +268,9 @@ TEST(Budget, KnowsWithinATenthWhatLightsHold)
                                kCount * (sizeof(renderer::LightBounds) + 4); // while the tree is built
     SceneDescription scene = scene_of({""});
     MeshFacts facts = nested();
-    const std::uint64_t dark = predict(scene, std::vector{facts}, {}).mesh_bytes;
+    const std::uint64_t dark = predict(scene, std::vector{facts}, plain()).mesh_bytes;
     facts.shining_triangles = kCount;
-    const double ratio = static_cast<double>(predict(scene, std::vector{facts}, {}).mesh_bytes - dark) /
+    const double ratio = static_cast<double>(predict(scene, std::vector{facts}, plain()).mesh_bytes - dark) /
                          static_cast<double>(held);
     EXPECT_GT(ratio, 0.9);
     EXPECT_LT(ratio, 1.1);
@@ -261,7 +282,7 @@ TEST(Budget, IsWhatThePlanPredictsPicturesAndAll)
     const SceneDescription scene = scene_of({""});
     const std::vector meshes{nested()};
     const Budget with = predict(scene, meshes, {}, std::vector{picture}),
-                 without = predict(scene, meshes, {});
+                 without = predict(scene, meshes, plain());
     EXPECT_GE(memory_bytes(with), memory_bytes(without) + picture.bytes);
     EXPECT_EQ(renderer::predict_cost(scene, {}, with, {}).memory_bytes, memory_bytes(with));
     Limits limits;
@@ -280,14 +301,14 @@ TEST(Budget, CountsLevelsOfPicturesOnSurfacesAlone)
     const std::vector pictures{renderer::ImageFacts{4096, 2048, kPixels * 12, false, true}};
     SceneDescription scene = scene_of({});
     scene.environment = renderer::ImageEnvironment{};
-    const Budget around = predict(scene, {}, {}, pictures);
+    const Budget around = predict(scene, {}, plain(), pictures);
     EXPECT_EQ(around.texture_bytes, kPixels * (12 + 12 + 4)); // decoded; radiance and running sums
     EXPECT_LT(around.building_bytes, kPixels);
     renderer::DiffuseMaterial painted;
     painted.color.texture = renderer::TextureUse{};
     scene.environment.reset();
     scene.materials = {{"painted", painted}};
-    const Budget on_surfaces = predict(scene, {}, {}, pictures);
+    const Budget on_surfaces = predict(scene, {}, plain(), pictures);
     EXPECT_EQ(on_surfaces.texture_bytes, kPixels * (12 + 4));
     EXPECT_EQ(on_surfaces.building_bytes, kPixels * 20); // a level and the next, as numbers
 }

@@ -83,7 +83,7 @@ TEST_F(Pictures, TellTheFaultOfABrokenOneAndRememberIt)
     const std::uint64_t runs = imports_.imports_run();
     EXPECT_EQ(code("a.gif", digest), "unsupported");
     EXPECT_EQ(imports_.imports_run(), runs);
-    const auto known = imports_.known_failure({"a.gif", digest, {}, {}, true});
+    const auto known = imports_.known_failure({"a.gif", digest, {}, true});
     ASSERT_TRUE(std::holds_alternative<ImportFailure>(known));
 }
 

@@ -107,15 +107,43 @@ TEST_F(StoredMeshesTest, KeepsEachSplitAndMindsTheFilesThatTheMeshOpens)
     const std::string obj = put("mtllib m.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const std::string red = put("newmtl a\nKd 1 0 0\n"), blue = put("newmtl a\nKd 0 0 1\n");
     start();
-    mesh({"a.obj", obj, {{"m.mtl", red}}, renderer::MeshTree::wide_sah});
-    mesh({"a.obj", obj, {{"m.mtl", red}}, renderer::MeshTree::wide_midpoint});
+    const auto with = [&](std::map<std::string, std::string> named, renderer::MeshTree tree) {
+        return mesh({"a.obj", obj, std::move(named), false, [tree](std::uint64_t) { return tree; }});
+    };
+    with({{"m.mtl", red}}, renderer::MeshTree::wide_sah);
+    with({{"m.mtl", red}}, renderer::MeshTree::wide_midpoint);
+    EXPECT_EQ(imports_->imports_run(), 1u);
     EXPECT_EQ(files().size(), 2u);
     start();
-    mesh({"a.obj", obj, {{"m.mtl", red}, {"other", blue}}, renderer::MeshTree::wide_midpoint});
+    with({{"m.mtl", red}, {"other", blue}}, renderer::MeshTree::wide_midpoint);
     EXPECT_EQ(imports_->imports_run(), 0u);
-    const auto other = mesh({"a.obj", obj, {{"m.mtl", blue}}, renderer::MeshTree::wide_sah});
+    const auto other = with({{"m.mtl", blue}}, renderer::MeshTree::wide_sah);
     EXPECT_EQ(imports_->imports_run(), 1u);
     EXPECT_EQ(mesh_of(*other).materials[0].diffuse, (renderer::Rgb{0, 0, 1}));
+}
+
+// A mesh that is known with another tree is not imported again: the one that is asked for is built, and kept as well.
+TEST_F(StoredMeshesTest, BuildsAnotherTreeOverAMeshThatItHas)
+{
+    ImportRequest request{"knot.ply", put(asset("knot.ply")), {}};
+    start();
+    mesh(request);
+    start();
+    std::uint64_t triangles = 0;
+    request.tree_for = [&](std::uint64_t count) {
+        triangles = count;
+        return renderer::MeshTree::wide_spatial;
+    };
+    const auto built = mesh(request);
+    EXPECT_EQ(triangles, mesh_of(*built).triangles.size());
+    EXPECT_EQ(imports_->imports_run(), 0u);
+    EXPECT_EQ(files().size(), 2u);
+    start();
+    const auto again = mesh(request);
+    EXPECT_EQ(imports_->imports_run(), 0u);
+    EXPECT_EQ(files().size(), 2u);
+    const auto built_tree = tree_bytes(*built), kept_tree = tree_bytes(*again);
+    EXPECT_TRUE(std::ranges::equal(kept_tree.arrays[0], built_tree.arrays[0]));
 }
 
 // Wherever a bit is lost, and wherever the file is cut: it is made again, and right.

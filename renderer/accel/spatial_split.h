@@ -1,0 +1,73 @@
+// Spatial splits: a run of triangles cut by a plane, what crosses it going to both sides, each by the box of its part
+// there. Where long triangles lie among small ones no sorting of whole boxes keeps the two sides apart.
+//
+// Promise  pure functions of the run in its order.
+// Source   M. Stich, H. Friedrich, A. Dietrich, "Spatial Splits in Bounding Volume Hierarchies", HPG 2009.
+#pragma once
+
+#include "renderer/accel/split.h"
+#include "renderer/geometry/mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace renderer {
+
+using TriangleItem = BuildItem<float>;
+
+// Half the area of a box's surface; 0 of an empty one.
+double half_area(const Bounds3f& box);
+
+// The triangles that items stand for, in scaled coordinates.
+class TriangleParts {
+public:
+    TriangleParts(const Mesh& mesh, float scale) : mesh_(mesh), scale_(static_cast<double>(scale)) {}
+
+    // The item's box, narrowed to what of its triangle lies between two planes that meet it.
+    TriangleItem part(const TriangleItem& item, unsigned axis, float from, float to) const;
+
+    struct Corners {
+        Vec3f at[3];
+    };
+    Corners corners(const TriangleItem& item) const // to a float
+    {
+        const Triangle& v = mesh_.triangles[item.primitive];
+        const auto at = [&](std::uint32_t vertex) {
+            return mesh_.positions[vertex] * static_cast<float>(scale_);
+        };
+        return {{at(v[0]), at(v[1]), at(v[2])}};
+    }
+
+private:
+    const Mesh& mesh_;
+    double scale_;
+};
+
+struct PlaneCut {
+    unsigned axis;
+    float plane;
+};
+
+// The cheapest plane of a few across each axis, if it costs less than `limit` (areas times tests, of both sides) and both
+// sides hold no more than `most` together.
+std::optional<PlaneCut> best_plane(std::span<const TriangleItem> run,
+                                   const RunBounds<float>& bounds,
+                                   const TriangleParts& parts,
+                                   std::uint32_t block,
+                                   std::size_t most,
+                                   double limit);
+
+// Cuts what `run` holds from `begin` on: the left side stays there, the right one follows it. `room` is for its use.
+// Where a side would be empty or no smaller than the whole, or both hold more than `most`, nothing is done: false.
+bool cut_by_plane(std::vector<TriangleItem>& run,
+                  std::size_t begin,
+                  const PlaneCut& cut,
+                  const TriangleParts& parts,
+                  std::size_t most,
+                  std::vector<TriangleItem>& room,
+                  Sides<float>& sides);
+
+} // namespace renderer
