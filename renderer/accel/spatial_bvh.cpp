@@ -45,9 +45,9 @@ public:
     }
 
     // Of what `items` holds from `begin` on. False: a leaf.
-    bool split(std::vector<TriangleItem>& items, std::size_t begin, const Run& run, Halves& halves)
+    bool split(ItemRun& items, std::size_t begin, const Run& run, Halves& halves)
     {
-        const std::span<TriangleItem> here = std::span(items).subspan(begin);
+        const std::span<TriangleItem> here = items.from(begin);
         const CutRule rule = cut_rule(here.size(), run.depth, options_);
         if (rule == CutRule::leaf) return false;
         Sides<float> sides;
@@ -78,7 +78,7 @@ public:
 
 private:
     // Whether it was cut by a plane, which is cheaper than `whole` sides, or than `limit` tests where there are none.
-    bool by_plane(std::vector<TriangleItem>& items,
+    bool by_plane(ItemRun& items,
                   std::size_t begin,
                   const Run& run,
                   const Sides<float>* whole,
@@ -98,9 +98,8 @@ private:
                          half_area(whole->bounds[0].box()) * leaf_tests(whole->left, options_) +
                              half_area(whole->bounds[1].box()) * leaf_tests(count - whole->left, options_));
         const std::size_t room = count + run.spare;
-        const auto cut =
-            best_plane(std::span(items).subspan(begin), run.bounds, parts_, options_.block, room, most);
-        if (!cut || !cut_by_plane(items, begin, *cut, parts_, room, room_, sides)) return false;
+        const auto cut = best_plane(items.from(begin), run.bounds, parts_, options_.block, room, most);
+        if (!cut || !cut_by_plane(items, begin, *cut, parts_, room, sides)) return false;
         made = items.size() - begin - count;
         return true;
     }
@@ -120,15 +119,14 @@ private:
     const BvhOptions& options_;
     double least_overlap_;
     const SplitKernels<float>& kernels_ = split_kernels<float>();
-    std::vector<TriangleItem> room_;
 };
 
 // One subtree, depth first. What is to be grown is always the end of `items`, so that it can become longer: the right
 // side first, then, when it is gone, the left one.
 class Grower {
 public:
-    Grower(Splitter splitter, std::vector<TriangleItem> items, const std::stop_token& stop, Grown& out)
-        : splitter_(std::move(splitter)), items_(std::move(items)), stop_(stop), out_(out)
+    Grower(const Splitter& splitter, ItemRun items, const std::stop_token& stop, Grown& out)
+        : splitter_(splitter), items_(items), stop_(stop), out_(out)
     {
     }
 
@@ -139,7 +137,7 @@ public:
             const std::size_t first = out_.order.size();
             for (std::size_t i = begin; i < items_.size(); ++i)
                 out_.order.push_back(items_[i].primitive);
-            items_.resize(begin);
+            items_.shorten(begin);
             return node_over(run.bounds, first, out_.order.size() - first);
         }
         const std::size_t pair = out_.pairs.size();
@@ -153,14 +151,26 @@ public:
 
 private:
     Splitter splitter_;
-    std::vector<TriangleItem> items_;
+    ItemRun items_;
     const std::stop_token& stop_;
     Grown& out_;
 };
 
-// A run of the first levels, where each has its own array.
+// Parts a run that was cut, each side with the room that it may need: `run` becomes the left one, the right one comes back.
+ItemRun part(ItemRun& run, const Halves& halves)
+{
+    const std::span<TriangleItem> places = run.places();
+    const std::size_t rights = run.size() - halves.left, begin = halves.left + halves.side[0].spare;
+    const std::span<TriangleItem> moving = run.from(halves.left);
+    std::copy_backward(
+        moving.begin(), moving.end(), moving.end() + static_cast<std::ptrdiff_t>(begin - halves.left));
+    run = ItemRun(places.first(begin), halves.left);
+    return ItemRun(places.subspan(begin), rights);
+}
+
+// A run of the first levels.
 struct Open {
-    std::vector<TriangleItem> items;
+    ItemRun items;
     Run run;
     std::uint32_t parent = Subtree<float>::kNoParent, side = 0;
 };
@@ -177,14 +187,14 @@ struct Crown {
         return run.parent == Subtree<float>::kNoParent ? root : pairs[run.parent].child[run.side];
     }
 
-    void grow(Open whole, const Splitter& splitter, ThreadPool& pool, const std::stop_token& stop)
+    void grow(const Open& whole, const Splitter& splitter, ThreadPool& pool, const std::stop_token& stop)
     {
         const std::size_t longest = longest_apart(whole.items.size());
         std::vector<Open> open;
-        const auto take = [&](Open run) {
-            (run.items.size() <= longest ? subtrees : open).push_back(std::move(run));
+        const auto take = [&](const Open& run) {
+            (run.items.size() <= longest ? subtrees : open).push_back(run);
         };
-        take(std::move(whole));
+        take(whole);
         while (!open.empty() && !stop.stop_requested()) {
             std::vector<Open> level = std::exchange(open, {});
             std::vector<Halves> halves(level.size());
@@ -193,11 +203,9 @@ struct Crown {
                 level.size(),
                 [&](std::size_t i, unsigned) {
                     Splitter own = splitter;
-                    std::vector<TriangleItem>& items = level[i].items;
+                    ItemRun& items = level[i].items;
                     own.split(items, 0, level[i].run, halves[i]); // runs so long are no leaves
-                    const auto middle = items.begin() + static_cast<std::ptrdiff_t>(halves[i].left);
-                    right[i].items.assign(middle, items.end());
-                    items.erase(middle, items.end());
+                    right[i].items = part(items, halves[i]);
                 },
                 stop);
             if (stop.stop_requested()) return;
@@ -206,8 +214,8 @@ struct Crown {
                 pairs.emplace_back();
                 depth = std::max(depth, level[i].run.depth + 1);
                 place_of(level[i]) = node_over(level[i].run.bounds, pair, 0);
-                take({std::move(level[i].items), halves[i].side[0], pair, 0});
-                take({std::move(right[i].items), halves[i].side[1], pair, 1});
+                take({level[i].items, halves[i].side[0], pair, 0});
+                take({right[i].items, halves[i].side[1], pair, 1});
             }
         }
     }
@@ -257,26 +265,30 @@ std::optional<Bvh<float>> build_spatial_bvh(const Mesh& mesh,
     if (stop.stop_requested()) return std::nullopt;
     if (items.empty()) return Bvh<float>();
     Open whole;
-    whole.items.assign(items.begin(), items.end());
-    items = PlainArray<BuildItem<float>>();
-    for (const TriangleItem& item : whole.items)
+    for (const TriangleItem& item : items)
         whole.run.bounds.extend(item);
-    whole.run.spare =
-        static_cast<std::size_t>(static_cast<double>(whole.items.size()) * (kMostReferences - 1));
+    whole.run.spare = static_cast<std::size_t>(static_cast<double>(items.size()) * (kMostReferences - 1));
+    PlainArray<TriangleItem> places(items.size() + whole.run.spare);
+    std::copy(items.begin(), items.end(), places.begin());
+    whole.items = ItemRun({places.data(), places.size()}, items.size());
+    items = PlainArray<BuildItem<float>>();
     const TriangleParts parts(mesh, scale);
     const Splitter splitter(parts, options, half_area(whole.run.bounds.box()));
     Crown crown;
-    crown.grow(std::move(whole), splitter, pool, stop);
+    crown.grow(whole, splitter, pool, stop);
     if (stop.stop_requested()) return std::nullopt;
     std::vector<Grown> grown(crown.subtrees.size());
     pool.run(
         grown.size(),
         [&](std::size_t i, unsigned) {
-            Open& subtree = crown.subtrees[i];
-            grown[i].top = Grower(splitter, std::move(subtree.items), stop, grown[i]).grow(0, subtree.run);
+            const Open& subtree = crown.subtrees[i];
+            grown[i].pairs.reserve(subtree.items.size() / 3);
+            grown[i].order.reserve(subtree.items.size() + subtree.run.spare);
+            grown[i].top = Grower(splitter, subtree.items, stop, grown[i]).grow(0, subtree.run);
         },
         stop);
     if (stop.stop_requested()) return std::nullopt;
+    places = PlainArray<TriangleItem>();
     Bvh<float> tree = join(crown, grown, pool);
     assert(tree.depth <= kMaxBvhDepth);
     return tree;

@@ -182,19 +182,18 @@ std::optional<PlaneCut> best_plane(std::span<const TriangleItem> run,
     return best;
 }
 
-bool cut_by_plane(std::vector<TriangleItem>& run,
+bool cut_by_plane(ItemRun& run,
                   std::size_t begin,
                   const PlaneCut& cut,
                   const TriangleParts& parts,
                   std::size_t most,
-                  std::vector<TriangleItem>& room,
                   Sides<float>& sides)
 {
     const auto [axis, plane] = cut;
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const auto is_left = [&](const TriangleItem& item) { return item.upper[axis] <= plane; };
     const auto is_right = [&](const TriangleItem& item) { return plane <= item.lower[axis]; };
-    const std::span<TriangleItem> whole = std::span(run).subspan(begin);
+    const std::span<TriangleItem> whole = run.from(begin);
     std::size_t lefts = 0, rights = 0;
     for (const TriangleItem& item : whole) {
         lefts += is_left(item) || !is_right(item);
@@ -202,21 +201,19 @@ bool cut_by_plane(std::vector<TriangleItem>& run,
     }
     if (lefts == 0 || rights == 0 || lefts == whole.size() || rights == whole.size()) return false;
     if (lefts + rights > most) return false;
-    room.clear();
     sides = {};
+    const std::size_t end = run.size();
     std::size_t next = begin;
-    for (const TriangleItem item : whole) {
-        if (is_left(item)) {
-            run[next++] = item;
-        } else if (is_right(item)) {
-            room.push_back(item);
-        } else {
-            run[next++] = parts.part(item, axis, -kInfinity, plane);
-            room.push_back(parts.part(item, axis, plane, kInfinity));
+    for (std::size_t i = begin; i < end; ++i) {
+        TriangleItem item = run[i];
+        if (!is_left(item)) {
+            if (is_right(item)) continue;
+            run.add(parts.part(item, axis, plane, kInfinity));
+            item = parts.part(item, axis, -kInfinity, plane);
         }
+        run[i] = run[next];
+        run[next++] = item;
     }
-    run.resize(next);
-    run.insert(run.end(), room.begin(), room.end());
     sides.left = next - begin;
     for (std::size_t i = begin; i < run.size(); ++i)
         sides.bounds[i < next ? 0 : 1].extend(run[i]);

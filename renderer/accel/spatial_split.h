@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace renderer {
 
@@ -20,6 +19,24 @@ using TriangleItem = BuildItem<float>;
 
 // Half the area of a box's surface; 0 of an empty one.
 double half_area(const Bounds3f& box);
+
+// A run with room behind it for what cuts add: a view of places that somebody else keeps.
+class ItemRun {
+public:
+    ItemRun() = default;
+    explicit ItemRun(std::span<TriangleItem> places, std::size_t size = 0) : places_(places), size_(size) {}
+
+    std::size_t size() const { return size_; }
+    TriangleItem& operator[](std::size_t i) { return places_[i]; }
+    std::span<TriangleItem> from(std::size_t begin) { return places_.first(size_).subspan(begin); }
+    void add(const TriangleItem& item) { places_[size_++] = item; } // there is room
+    void shorten(std::size_t size) { size_ = size; }
+    std::span<TriangleItem> places() const { return places_; } // the room counted
+
+private:
+    std::span<TriangleItem> places_;
+    std::size_t size_ = 0;
+};
 
 // The triangles that items stand for, in scaled coordinates.
 class TriangleParts {
@@ -60,14 +77,14 @@ std::optional<PlaneCut> best_plane(std::span<const TriangleItem> run,
                                    std::size_t most,
                                    double limit);
 
-// Cuts what `run` holds from `begin` on: the left side stays there, the right one follows it. `room` is for its use.
-// Where a side would be empty or no smaller than the whole, or both hold more than `most`, nothing is done: false.
-bool cut_by_plane(std::vector<TriangleItem>& run,
+// Cuts what `run` holds from `begin` on: the left side stays there, the right one follows it.
+// Where a side would be empty or no smaller than the whole, or both hold more than `most`, for which there is room, nothing
+// is done: false.
+bool cut_by_plane(ItemRun& run,
                   std::size_t begin,
                   const PlaneCut& cut,
                   const TriangleParts& parts,
                   std::size_t most,
-                  std::vector<TriangleItem>& room,
                   Sides<float>& sides);
 
 } // namespace renderer
