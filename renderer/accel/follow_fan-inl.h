@@ -128,6 +128,16 @@ public:
     // Bit i: ray i hit.
     HWY_INLINE std::uint64_t walk()
     {
+        if constexpr (kAnyHit)
+            return walk_any();
+        else
+            return walk_nearest();
+    }
+
+private:
+    // Nearest first, for the ends that hits draw in.
+    HWY_INLINE std::uint64_t walk_nearest()
+    {
         struct Waiting {
             std::uint32_t code;
             float entry;
@@ -140,7 +150,7 @@ public:
         end_ = farthest_end();
         for (;;) {
             if ((next.code & ChildCode::kLeaf) != 0) {
-                if (++leaves_ > fan_.most_leaves) return kAnyHit ? found_.settle() : 0;
+                if (++leaves_ > fan_.most_leaves) return 0;
                 visit_leaf(next.code);
             } else {
                 const WideNode& node = mesh_.nodes[next.code];
@@ -149,9 +159,6 @@ public:
                 for (unsigned hits = entered.children; hits != 0; hits &= hits - 1) {
                     const auto i = static_cast<unsigned>(__builtin_ctz(hits));
                     const Waiting child{node.child[i], entered.entries[i]};
-                    // Shadow rays start at all depths: what all together meet is often met by none.
-                    if (kAnyHit && (child.code & ChildCode::kLeaf) != 0 && !sides.some_group_enters(node, i))
-                        continue;
                     fetch(child.code);
                     unsigned at = waiting++;
                     for (; at > base && stack[at - 1].entry < child.entry; --at)
@@ -166,7 +173,54 @@ public:
         }
     }
 
-private:
+    // Any order will do: the leaves of a node at once, its inner children later.
+    HWY_INLINE std::uint64_t walk_any()
+    {
+        const FanSides sides(fan_);
+        std::uint32_t nodes[kMostWaiting];
+        unsigned waiting = 0;
+        std::uint32_t next = 0;
+        Entered entered;
+        end_ = farthest_end();
+        for (;;) {
+            const WideNode& node = mesh_.nodes[next];
+            sides.enter_children(node, end_, entered);
+            const unsigned leaf_bits = leaves_of(node);
+            for (unsigned hits = entered.children & ~leaf_bits; hits != 0; hits &= hits - 1) {
+                const std::uint32_t code = node.child[__builtin_ctz(hits)];
+                fetch(code);
+                nodes[waiting++] = code;
+            }
+            unsigned some = 0;
+            for (unsigned hits = entered.children & leaf_bits; hits != 0; hits &= hits - 1) {
+                const auto i = static_cast<unsigned>(__builtin_ctz(hits));
+                // Shadow rays start at all depths: what all together meet is often met by none.
+                if (!sides.some_group_enters(node, i)) continue;
+                fetch(node.child[i]);
+                some |= 1u << i;
+            }
+            for (; some != 0; some &= some - 1) {
+                if (++leaves_ > fan_.most_leaves) return found_.settle();
+                visit_leaf(node.child[__builtin_ctz(some)]);
+                if (end_ < 0) return found_.settle();
+            }
+            if (waiting == 0) return found_.settle();
+            next = nodes[--waiting];
+        }
+    }
+
+    static HWY_INLINE unsigned leaves_of(const WideNode& node)
+    {
+        const hn::Rebind<std::int32_t, Eight> d;
+        unsigned bits = 0;
+        for (std::size_t lane = 0; lane < WideNode::kChildren; lane += hn::MaxLanes(d))
+            bits |= bits_of(d,
+                            hn::Lt(hn::Load(d, reinterpret_cast<const std::int32_t*>(node.child) + lane),
+                                   hn::Zero(d)))
+                    << lane;
+        return bits;
+    }
+
     // What is to be visited comes while others are looked at.
     HWY_INLINE void fetch(std::uint32_t code) const
     {
