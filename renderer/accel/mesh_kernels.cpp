@@ -5,6 +5,7 @@
 #include "renderer/accel/ray_fan.h"
 #include "renderer/accel/ray_run.h"
 #include "renderer/math/kernel_targets.h"
+#include "renderer/math/uninitialized.h"
 
 #include <algorithm>
 #include <bit>
@@ -119,25 +120,16 @@ bool trace_fan(
         found_in_fan = trace_lone<kAnyHit>(mesh, rays, count, hits);
         return true;
     }
-    Ray left[RayRun::kRays];
-    unsigned from[RayRun::kRays];
+    Uninitialized<Ray, RayFan::kRays> left;
+    unsigned from[RayFan::kRays];
     unsigned waiting = 0;
-    const auto trace_left = [&]() HWY_ATTR {
-        for (std::uint64_t met = may_run_alike(left, waiting)
-                                     ? trace_alike<kAnyHit>(mesh, left, waiting, hits)
-                                     : trace_lone<kAnyHit>(mesh, left, waiting, hits);
-             met != 0;
-             met &= met - 1)
-            found_in_fan |= std::uint64_t{1} << from[__builtin_ctzll(met)];
-        waiting = 0;
-    };
     for (unsigned i = 0; i < count; ++i) {
         if ((found_in_fan >> i & 1) != 0) continue;
         left[waiting] = rays[i];
         from[waiting++] = i;
-        if (waiting == RayRun::kRays) trace_left();
     }
-    if (waiting != 0) trace_left();
+    for (std::uint64_t met = trace_lone<kAnyHit>(mesh, left.data(), waiting, hits); met != 0; met &= met - 1)
+        found_in_fan |= std::uint64_t{1} << from[__builtin_ctzll(met)];
     return true;
 }
 

@@ -36,17 +36,17 @@ public:
     }
 
 private:
-    // Many in a row: hard corners lie together in meshes where most walks pay.
-    static constexpr std::uint32_t kMany = 1024, kMost = 1280;
+    // Very many in a row: hard corners lie together in meshes where most walks pay.
+    static constexpr std::uint32_t kMany = 4096, kMost = 5120;
 
     std::uint32_t lost_weight_, paid_weight_;
     alignas(std::atomic_ref<std::uint32_t>::required_alignment) mutable std::uint32_t balance_ = 0;
 };
 
 // Of the fans in a mesh, for the nearest hit and for any. A lost fan has found nothing of the nearest hits, and of any
-// hits some: these are worth trying where a ninth of them pay, those where two thirds do.
+// hits some: these are worth trying where half of them pay, those where two thirds do.
 struct alignas(64) FanWalks {
-    SharedWalks nearest{8, 4}, any{1, 8};
+    SharedWalks nearest{32, 16}, any{1, 1};
 
     SharedWalks& of(bool any_hit) { return any_hit ? any : nearest; }
 };
