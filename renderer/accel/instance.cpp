@@ -191,7 +191,7 @@ void Instance::resolve(std::span<const Ray> world_rays,
 {
     const Mesh* const mesh = mesh_behind(geometry_);
     constexpr int kFew = 2; // are quicker one by one
-    SurfaceLanes lanes{};
+    SurfaceLanes lanes;
     std::size_t of[SurfaceLanes::kHits];
     while (mesh != nullptr && std::popcount(which) > kFew) {
         std::size_t count = 0;
@@ -199,6 +199,8 @@ void Instance::resolve(std::span<const Ray> world_rays,
             of[count] = static_cast<std::size_t>(std::countr_zero(which));
             put(*mesh, candidates[of[count]], lanes, count);
         }
+        for (std::size_t lane = count; lane < SurfaceLanes::kHits; ++lane)
+            put(*mesh, candidates[of[0]], lanes, lane);
         find_surfaces()(placement_, lanes);
         for (std::size_t lane = 0; lane < count; ++lane)
             take(candidates[of[lane]], lanes, lane, hits[of[lane]]);

@@ -94,7 +94,9 @@ def main():
         pathlib.Path(folder, "ball.obj").write_text(ball(), encoding="ascii")
         for number, (name, scene) in enumerate(list(scenes().items())[: 1 if options.plain else None]):
             job = pathlib.Path(folder, "scene.json")
-            job.write_text(json.dumps({"scene": scene, "image": {"width": WIDTH, "height": HEIGHT}}), encoding="ascii")
+            request = {"scene": scene, "image": {"width": WIDTH, "height": HEIGHT}}
+            request["acceleration"] = {"bvh": {"split": "sah"}}  # the same tree, however many samples
+            job.write_text(json.dumps(request), encoding="ascii")
             # What is not held need not be known to the older build.
             costs = [cost(p, job, options.samples, folder) for p in (programs if number == 0 else programs[:1])]
             line = f"{name:36} {costs[0]:9.1f}"
