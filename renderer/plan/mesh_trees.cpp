@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace renderer {
@@ -39,8 +40,19 @@ double scattered_rays_a_sample(const TransportChoice& transport)
     return 0;
 }
 
+// Descriptions that are yet to be refused come here too.
+bool names_what_is_there(const SceneDescription& scene)
+{
+    return std::ranges::all_of(scene.objects, [&](const ObjectDescription& object) {
+        const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+        return (mesh == nullptr || mesh->mesh < scene.meshes.size()) &&
+               (!object.material || *object.material < scene.materials.size());
+    });
+}
+
 double rays_of(const SceneDescription& scene, const RenderSettings& settings)
 {
+    if (!names_what_is_there(scene)) return 0;
     const double rays =
         static_cast<double>(most_camera_rays(settings)) * scattered_rays_a_sample(transport_of(scene));
     const QualitySettings& quality = settings.quality;

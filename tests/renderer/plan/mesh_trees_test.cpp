@@ -65,11 +65,20 @@ TEST(MeshTrees, MindTheTimeThatARenderHas)
 TEST(MeshTrees, AreTheSameBeforeAndAfterDefaultsAreFilledIn)
 {
     Question question;
-    question.scene.transport.type = TransportType::automatic;
-    question.scene.environment.reset();
+    question.scene = SceneDescription();
     const AssumedScene assumed = assume_defaults(question.scene, {}, 1);
     for (const std::uint64_t triangles : {100u, 10000u, 100000u})
         EXPECT_EQ(question.tree(triangles), MeshTrees(assumed.description, question.settings).of(triangles));
+}
+
+TEST(MeshTrees, ArePlainInADescriptionThatNamesWhatIsNotThere)
+{
+    Question question;
+    question.scene.objects.emplace_back().material = 3;
+    EXPECT_EQ(question.tree(12), MeshTree::wide_sah);
+    question.scene.objects.back().material.reset();
+    question.scene.objects.back().shape = MeshShape{7, ""};
+    EXPECT_EQ(question.tree(12), MeshTree::wide_sah);
 }
 
 TEST(MeshTrees, SayWhy)
