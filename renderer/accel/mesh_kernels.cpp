@@ -128,6 +128,7 @@ bool trace_fan(
         left[waiting] = rays[i];
         from[waiting++] = i;
     }
+    if (waiting == 0) return true; // all had hit by then
     for (std::uint64_t met = trace_lone<kAnyHit>(mesh, left.data(), waiting, hits); met != 0; met &= met - 1)
         found_in_fan |= std::uint64_t{1} << from[__builtin_ctzll(met)];
     return true;

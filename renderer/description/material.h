@@ -58,7 +58,7 @@ struct GlassMaterial {
     // Where bodies overlap, the one of the highest priority fills the place.
     std::uint32_t priority = 0;
     std::optional<TextureUse> normal_map{};
-    Rgb transmission{1, 1, 1}; // of what passes its boundary; only a mesh's own says so
+    TexturedColor transmission{{1, 1, 1}}; // of what passes its boundary; only a mesh's own says so
     friend bool operator==(const GlassMaterial&, const GlassMaterial&) = default;
 };
 

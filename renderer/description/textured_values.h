@@ -23,6 +23,7 @@ void for_each_textured_of(M& material, F&& f)
     if constexpr (requires { material.metallic.texture; }) f(material.metallic);
     if constexpr (requires { material.roughness.texture; }) f(material.roughness);
     if constexpr (requires { material.radiance.texture; }) f(material.radiance);
+    if constexpr (requires { material.transmission.texture; }) f(material.transmission);
 }
 
 template <typename F>

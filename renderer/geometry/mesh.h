@@ -41,7 +41,8 @@ struct MeshMaterial {
     bool is_physical = false;
     float metallic = 0, roughness = 1;
     float ior = 1.5f; // 1 to kGreatestMeshIor
-    // A closed body of glass, of that index; beside roughness, normal map and these two nothing else counts.
+    // A closed body of glass, of that index; beside roughness, normal map, these two and, of a physical one, the colour's
+    // picture, which multiplies `transmission`, nothing else counts.
     bool is_glass = false;
     Rgb absorption{};          // of light within it, 1/m
     Rgb transmission{1, 1, 1}; // share of light that a boundary lets pass, of what it does not reflect

@@ -83,7 +83,7 @@ Bsdf make_glass(const GlassMaterial& m)
     bsdf.roughness = static_cast<float>(roughness);
     bsdf.medium = {static_cast<float>(m.ior), m.priority, m.absorption};
     bsdf.eta = bsdf.medium.ior;
-    bsdf.diffuse = m.transmission;
+    bsdf.diffuse = m.transmission.value;
     return bsdf;
 }
 

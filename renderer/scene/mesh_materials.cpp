@@ -30,8 +30,9 @@ Material glass(const MeshMaterial& m)
     GlassMaterial out;
     out.ior = static_cast<double>(m.ior);
     out.absorption = {m.absorption};
-    out.transmission = m.transmission;
-    if (!m.is_physical) return out; // smooth
+    out.transmission = {m.transmission, {}};
+    if (!m.is_physical) return out; // smooth, and its picture is of what it reflects
+    out.transmission.texture = m.color_map;
     std::optional<TextureUse> map = m.physical_map;
     if (map) map->channel = 1;
     out.roughness = {static_cast<double>(m.roughness), map};

@@ -255,6 +255,34 @@ TEST(GlassBody, OfAColourTintsWhatPassesEachOfItsBoundaries)
         }
 }
 
+TEST(GlassBody, OfAPictureOfOneColourIsTintedAsOfThatColour)
+{
+    const Balls balls;
+    constexpr Rgb kTint{1, 0.5f, 0.25f};
+    for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
+        TestScene colour = ball_before_the_sky(glass(1.5), transport);
+        colour.description.environment = ColorEnvironment{{1, 1, 1}};
+        colour.description.transport.max_depth = 8;
+        colour.description.objects[0].shape = MeshShape{};
+        colour.description.objects[0].material.reset();
+        colour.meshes = {balls.glass};
+        Mesh& mesh = colour.meshes[0];
+        mesh.uvs.assign(mesh.positions.size(), {0.5f, 0.5f});
+        mesh.materials[0].is_physical = true;
+        mesh.materials[0].roughness = 0;
+        TestScene picture = colour;
+        mesh.materials[0].transmission = kTint;
+        Image image{1, 1, 3, PixelType::real_32, {}};
+        image.bytes.append(std::as_bytes(std::span(&kTint, 1)));
+        picture.meshes[0].images.push_back({"tint", image});
+        picture.meshes[0].materials[0].color_map = TextureUse();
+        EXPECT_EQ(tests::digest(render_description(picture).film),
+                  tests::digest(render_description(colour).film));
+        const Rgb seen = tests::mean_of(render_description(picture).film.mean());
+        EXPECT_GT(seen.r, 1.05f * seen.b);
+    }
+}
+
 TEST(GlassBody, WithinAnotherOfTheSameMeshIsABodyOfItsOwn)
 {
     const Balls balls;
