@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <future>
 #include <memory>
 #include <stdexcept>
@@ -67,13 +68,21 @@ Film render_async(const Ready& ready, std::uint32_t tile_side_px)
     const ImageSettings& image = ready.settings.image;
     Film film(PixelRect{0, 0, image.width_px, image.height_px});
     const TileGrid grid(film.region, tile_side_px);
-    std::vector<std::future<std::vector<TileSums>>> tiles;
-    for (std::size_t i = 0; i < grid.size(); ++i)
+    std::deque<std::future<std::vector<TileSums>>> tiles;
+    const auto merge_first = [&] {
+        for (const TileSums& slice : tiles.front().get())
+            film.merge(slice);
+        tiles.pop_front();
+    };
+    // Each is a thread until it is merged, also when it is done: a system has no room for one a pixel at once.
+    constexpr std::size_t kMostThreads = 1000;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        if (tiles.size() == kMostThreads) merge_first();
         tiles.push_back(std::async(std::launch::async,
                                    [&ready, tile = grid.tile(i)] { return trace_tile(ready, tile); }));
-    for (auto& tile : tiles)
-        for (const TileSums& slice : tile.get())
-            film.merge(slice);
+    }
+    while (!tiles.empty())
+        merge_first();
     film.samples = ready.settings.quality.samples.value();
     return film;
 }
