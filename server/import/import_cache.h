@@ -36,6 +36,13 @@ struct KnownImport {
     std::shared_ptr<const renderer::MeshFacts> facts; // once a mesh was prepared
     std::array<std::shared_ptr<const renderer::PreparedMesh>, renderer::kMeshTrees>
         prepared; // by tree; null where not (any more) in memory
+    // With any of them; null where there is none.
+    std::shared_ptr<const renderer::PreparedMesh> with_any_tree() const
+    {
+        for (const auto& mesh : prepared)
+            if (mesh) return mesh;
+        return nullptr;
+    }
     std::optional<api::AssetInfo::ImageInfo> picture_figures{}; // engaged of a picture, instead of `figures`
     std::shared_ptr<const renderer::Image> picture{};           // null where not (any more) in memory
 };

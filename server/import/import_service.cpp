@@ -22,38 +22,10 @@ namespace {
 
 constexpr BlobStore::Kind kAsset = BlobStore::Kind::asset;
 
-// The extension as a hint, if it is one that a format goes by.
-std::string extension_of(const std::string& name)
-{
-    std::string extension = std::filesystem::path(name).extension().string();
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    const bool is_known = renderer::is_mesh_extension(extension) || extension == ".tga"; // which has no mark
-    return is_known ? extension : std::string();
-}
-
-// The same bytes may be wanted as one thing or another, with another answer.
-std::string main_key(const ImportRequest& request)
-{
-    return request.digest + (request.is_picture ? std::string(kPictureWord) : "") +
-           extension_of(request.name);
-}
-
 // An asset by itself, as /info looks at it.
 ImportRequest bare_request(const std::string& digest)
 {
     return {"", digest, {}, false};
-}
-
-api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const KnownImport& known)
-{
-    api::AssetInfo info;
-    info.digest = digest;
-    info.bytes = bytes;
-    info.mesh = known.figures;
-    info.image = known.picture_figures;
-    if (known.failure) info.fault = api::Problem{"", known.failure->code, known.failure->detail};
-    return info;
 }
 
 ImportFailure out_of_memory()
@@ -73,18 +45,6 @@ std::shared_ptr<const renderer::MeshFacts> facts_of_shared(const renderer::Mesh&
 ImportFailure not_a_mesh(const api::AssetInfo::ImageInfo& picture)
 {
     return {"not_a_mesh", "the file is a picture (" + picture.format + "), not a mesh"};
-}
-
-renderer::MeshTree tree_for(const ImportRequest& request, const renderer::MeshFacts& facts)
-{
-    return request.tree_for ? request.tree_for(facts.triangles) : renderer::MeshTree::wide_sah;
-}
-
-// The mesh with any tree; nullptr where there is none in memory.
-const std::shared_ptr<const renderer::PreparedMesh>* any_prepared(const KnownImport& known)
-{
-    const auto found = std::ranges::find_if(known.prepared, [](const auto& mesh) { return mesh != nullptr; });
-    return found == known.prepared.end() ? nullptr : &*found;
 }
 
 } // namespace
@@ -190,30 +150,59 @@ struct ImportService::State {
         return ImportFailure{"asset_damaged", api::damaged_asset_words(damage.digest)};
     }
 
-    // From the disk into the cache, if it was kept there: with the tree that is asked for, if that is there too.
-    void load(const ImportRequest& request, renderer::ThreadPool& pool)
+    // What a child made of it, and what is known from that.
+    struct Run {
+        Imported imported;
+        KnownImport known;
+        bool repeatable = false; // the same would come again
+    };
+    Run run(const ImportRequest& request, const std::stop_token& stop)
     {
-        if (!stored) return;
-        std::optional<renderer::MeshTree> asked;
-        using enum renderer::MeshTree;
-        for (const renderer::MeshTree tree : {wide_sah, wide_spatial, wide_midpoint}) {
-            if (asked && tree != *asked) continue;
-            auto known = stored->load(main_key(request), request.files, tree, pool);
-            if (!known) continue;
-            known->facts = facts_of_shared(mesh_of(*known->prepared[static_cast<std::size_t>(tree)]));
-            asked = tree_for(request, *known->facts);
-            remember(std::move(*known));
-            if (tree == *asked) return;
-        }
+        Run run{{}, {main_key(request), {}, {}, {}, {}, {}}};
+        run.imported = import(request, run.known.answers, run.repeatable, stop);
+        if (const auto* failure = std::get_if<ImportFailure>(&run.imported))
+            run.known.failure = *failure;
+        else if (const auto* picture = std::get_if<ImportedPicture>(&run.imported))
+            run.known.picture_figures = picture_figures(*picture);
+        else if (const auto* asset = std::get_if<ImportedAsset>(&run.imported))
+            run.known.figures = mesh_figures(*asset);
+        if (run.known.failure && run.repeatable) remember(run.known);
+        return run;
     }
 
-    // What is in the cache, with another tree than is asked for.
-    std::optional<KnownImport> known_otherwise(const ImportRequest& request)
+    // As it is in memory: with some tree, not always the one that is asked for.
+    std::optional<KnownImport> in_memory(const ImportRequest& request)
     {
         const std::lock_guard lock(mutex);
         const KnownImport* known = cache.find(main_key(request), request.files);
-        if (!known || !any_prepared(*known)) return std::nullopt;
+        if (!known || !known->with_any_tree()) return std::nullopt;
         return *known;
+    }
+
+    // The same from the disk, and into the cache.
+    std::optional<KnownImport> on_disk(const ImportRequest& request, renderer::ThreadPool& pool)
+    {
+        if (!stored) return std::nullopt;
+        std::optional<KnownImport> found;
+        const auto load = [&](renderer::MeshTree tree) {
+            auto known = stored->load(main_key(request), request.files, tree, pool);
+            if (!known) return;
+            known->facts = facts_of_shared(mesh_of(*known->prepared[static_cast<std::size_t>(tree)]));
+            found = *known;
+            remember(std::move(*known));
+        };
+        // What it would ask for of a small mesh is the likeliest: how large this one is, is not known yet.
+        const renderer::MeshTree likely = tree_for(request, 1);
+        load(likely);
+        using enum renderer::MeshTree;
+        for (const renderer::MeshTree other : {wide_sah, wide_spatial, wide_midpoint}) {
+            if (found) break;
+            if (other != likely) load(other);
+        }
+        if (!found) return std::nullopt;
+        const renderer::MeshTree asked = tree_for(request, found->facts->triangles);
+        if (!found->prepared[static_cast<std::size_t>(asked)]) load(asked);
+        return found;
     }
 
     // With the tree that is asked for, if it may be built; what is known is remembered.
@@ -221,7 +210,7 @@ struct ImportService::State {
     PreparedAsset prepare(const ImportRequest& request, KnownImport known, const Build& build)
     {
         PreparedAsset prepared{nullptr, known.figures->notes, known.facts};
-        const renderer::MeshTree tree = tree_for(request, *known.facts);
+        const renderer::MeshTree tree = tree_for(request, known.facts->triangles);
         if (!request.may_build || request.may_build(*known.facts)) {
             prepared.mesh = build(tree);
             if (!prepared.mesh) prepared = {}; // stopped
@@ -230,16 +219,6 @@ struct ImportService::State {
         if (stored && prepared.mesh) stored->keep(known, tree);
         remember(std::move(known));
         return prepared;
-    }
-    PreparedAsset with_its_tree(const ImportRequest& request,
-                                KnownImport known,
-                                renderer::ThreadPool& pool,
-                                const std::stop_token& stop)
-    {
-        const std::shared_ptr<const renderer::PreparedMesh> other = *any_prepared(known);
-        return prepare(request, std::move(known), [&](renderer::MeshTree tree) {
-            return prepare_again(other, tree, pool, stop);
-        });
     }
 
     void remember(KnownImport known)
@@ -281,7 +260,8 @@ try {
         if (known.failure) return *known.failure;
         if (known.picture_figures) return not_a_mesh(*known.picture_figures);
         if (!known.facts) return std::nullopt;
-        if (const auto& mesh = known.prepared[static_cast<std::size_t>(tree_for(request, *known.facts))])
+        if (const auto& mesh =
+                known.prepared[static_cast<std::size_t>(tree_for(request, known.facts->triangles))])
             return PreparedAsset{mesh, known.figures->notes, known.facts};
         return std::nullopt;
     };
@@ -290,29 +270,26 @@ try {
     if (stopped) return PreparedAsset{};
     const State::Flight flight(*state_, main_key(request));
 
-    if (!state_->known_otherwise(request)) state_->load(request, pool);
-    if (auto known = state_->known_otherwise(request)) {
-        if (auto found = answer(*known)) return std::move(*found);
-        return state_->with_its_tree(request, std::move(*known), pool, stop);
+    std::optional<KnownImport> held = state_->in_memory(request);
+    if (!held) held = state_->on_disk(request, pool);
+    if (held) {
+        if (auto found = answer(*held)) return std::move(*found);
+        const auto other = held->with_any_tree();
+        return state_->prepare(request, std::move(*held), [&](renderer::MeshTree tree) {
+            return prepare_again(other, tree, pool, stop);
+        });
     }
 
-    KnownImport known{main_key(request), {}, {}, {}, {}, {}};
-    bool repeatable = false;
-    State::Imported imported = state_->import(request, known.answers, repeatable, stop);
-    if (auto* failure = std::get_if<ImportFailure>(&imported)) {
-        known.failure = *failure;
-        if (repeatable) state_->remember(std::move(known));
-        return std::move(*failure);
-    }
-    if (const auto* picture = std::get_if<ImportedPicture>(&imported)) {
-        known.picture_figures = picture_figures(*picture);
+    State::Run run = state_->run(request, stop);
+    KnownImport& known = run.known;
+    if (known.failure) return *known.failure;
+    if (known.picture_figures) {
         const ImportFailure failure = not_a_mesh(*known.picture_figures);
         state_->remember(std::move(known));
         return failure;
     }
-    auto* asset = std::get_if<ImportedAsset>(&imported);
+    auto* asset = std::get_if<ImportedAsset>(&run.imported);
     if (!asset) return PreparedAsset{};
-    known.figures = mesh_figures(*asset);
     known.facts = facts_of_shared(asset->mesh);
     return state_->prepare(request, std::move(known), [&](renderer::MeshTree tree) {
         return prepare_mesh(std::move(asset->mesh), tree, pool, stop);
@@ -336,20 +313,13 @@ try {
     if (stopped) return ImportedPixels();
     const State::Flight flight(*state_, main_key(request));
 
-    KnownImport known{main_key(request), {}, {}, {}, {}, {}};
-    bool repeatable = false;
-    State::Imported imported = state_->import(request, known.answers, repeatable, stop);
-    if (auto* failure = std::get_if<ImportFailure>(&imported)) {
-        known.failure = *failure;
-        if (repeatable) state_->remember(std::move(known));
-        return std::move(*failure);
-    }
-    auto* picture = std::get_if<ImportedPicture>(&imported);
+    State::Run run = state_->run(request, stop);
+    if (run.known.failure) return *run.known.failure;
+    auto* picture = std::get_if<ImportedPicture>(&run.imported);
     if (!picture) return ImportedPixels();
-    known.picture_figures = picture_figures(*picture);
     const auto pixels = std::make_shared<const renderer::Image>(std::move(picture->image));
-    known.picture = pixels;
-    state_->remember(std::move(known));
+    run.known.picture = pixels;
+    state_->remember(std::move(run.known));
     return pixels;
 } catch (const std::bad_alloc&) {
     return out_of_memory();
@@ -370,26 +340,19 @@ std::optional<api::AssetInfo> ImportService::info(const std::string& digest, con
         return info_of(digest, bytes, known);
     };
     const ImportRequest request = bare_request(digest);
-    KnownImport known{main_key(request), {}, {}, {}, {}, {}};
     try {
         bool stopped = false;
         if (auto found = state_->wait_for_turn(request, answer, stop, stopped)) return found;
         if (stopped) return std::nullopt;
         const State::Flight flight(*state_, main_key(request));
 
-        bool repeatable = false;
-        const State::Imported imported = state_->import(request, known.answers, repeatable, stop);
-        if (std::holds_alternative<std::monostate>(imported)) return std::nullopt;
-        if (const auto* failure = std::get_if<ImportFailure>(&imported))
-            known.failure = *failure;
-        else if (const auto* picture = std::get_if<ImportedPicture>(&imported))
-            known.picture_figures = picture_figures(*picture);
-        else
-            known.figures = mesh_figures(std::get<ImportedAsset>(imported));
-        auto info = answer(known);
-        if (repeatable) state_->remember(std::move(known));
+        State::Run run = state_->run(request, stop);
+        if (std::holds_alternative<std::monostate>(run.imported)) return std::nullopt;
+        auto info = answer(run.known);
+        if (run.repeatable && !run.known.failure) state_->remember(std::move(run.known));
         return info;
     } catch (const std::bad_alloc&) {
+        KnownImport known{main_key(request), {}, {}, {}, {}, {}};
         known.failure = out_of_memory();
         return answer(known);
     }

@@ -20,12 +20,11 @@
 #include "renderer/plan/plan.h"
 #include "renderer/textures/image.h"
 #include "server/import/import_failure.h"
+#include "server/import/import_request.h"
 #include "server/log/log.h"
 #include "server/store/blob_store.h"
 
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -41,16 +40,6 @@ struct PreparedAsset {
     std::shared_ptr<const renderer::MeshFacts> facts;
 };
 
-struct ImportRequest {
-    std::string name;                         // as the scene calls it: its extension may tell the format
-    std::string digest;                       // of the main file
-    std::map<std::string, std::string> files; // the job's files, name -> digest: the only names that resolve
-    bool is_picture = false;                  // is wanted; then files and tree do not count
-    // Of a mesh of so many triangles. None: wide_sah.
-    std::function<renderer::MeshTree(std::uint64_t triangles)> tree_for = nullptr;
-    // Asked before a tree is built; where it says no there is none. None: always.
-    std::function<bool(const renderer::MeshFacts&)> may_build = nullptr;
-};
 using ImportedPixels = std::shared_ptr<const renderer::Image>;
 
 class ImportService {

@@ -56,4 +56,15 @@ api::AssetInfo::ImageInfo picture_figures(const ImportedPicture& picture)
             static_cast<std::uint32_t>(8 * bytes_of(image.type))};
 }
 
+api::AssetInfo info_of(const std::string& digest, std::uint64_t bytes, const KnownImport& known)
+{
+    api::AssetInfo info;
+    info.digest = digest;
+    info.bytes = bytes;
+    info.mesh = known.figures;
+    info.image = known.picture_figures;
+    if (known.failure) info.fault = api::Problem{"", known.failure->code, known.failure->detail};
+    return info;
+}
+
 } // namespace server

@@ -122,6 +122,20 @@ TEST_F(StoredMeshesTest, KeepsEachSplitAndMindsTheFilesThatTheMeshOpens)
     EXPECT_EQ(mesh_of(*other).materials[0].diffuse, (renderer::Rgb{0, 0, 1}));
 }
 
+TEST_F(StoredMeshesTest, AMeshThatTheCacheHasNoRoomForIsNotImportedAgain)
+{
+    const ImportRequest request{"knot.ply", put(asset("knot.ply")), {}};
+    limits_.mesh_cache_bytes = 1;
+    start();
+    mesh(request);
+    EXPECT_TRUE(mesh(request));
+    EXPECT_EQ(imports_->imports_run(), 1u);
+    EXPECT_EQ(imports_->cached_bytes(), 0u);
+    start();
+    EXPECT_TRUE(mesh(request));
+    EXPECT_EQ(imports_->imports_run(), 0u);
+}
+
 // A mesh that is known with another tree is not imported again: the one that is asked for is built, and kept as well.
 TEST_F(StoredMeshesTest, BuildsAnotherTreeOverAMeshThatItHas)
 {
