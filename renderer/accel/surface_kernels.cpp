@@ -11,20 +11,17 @@
 #define HWY_TARGET_INCLUDE "renderer/accel/surface_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "renderer/math/vec3_lanes-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace renderer::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, SurfaceLanes::kHits>;
 using V = hn::Vec<D>;
-
-// The functions of vec3.h, lane by lane.
-struct Vectors {
-    V x, y, z;
-};
+using Vectors = Vec3Lanes<V>;
 
 HWY_INLINE V set(double value)
 {
@@ -32,7 +29,7 @@ HWY_INLINE V set(double value)
 }
 HWY_INLINE Vectors splat(Vec3d v)
 {
-    return {set(v.x), set(v.y), set(v.z)};
+    return splat(D(), v);
 }
 HWY_INLINE Vectors load(const SurfaceLanes::Vectors& from, std::size_t first)
 {
@@ -45,43 +42,6 @@ HWY_INLINE void store(const Vectors& v, SurfaceLanes::Vectors& to, std::size_t f
     hn::Store(v.x, d, to[0] + first);
     hn::Store(v.y, d, to[1] + first);
     hn::Store(v.z, d, to[2] + first);
-}
-HWY_INLINE Vectors add(const Vectors& a, const Vectors& b)
-{
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Vectors subtract(const Vectors& a, const Vectors& b)
-{
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vectors times(const Vectors& a, V s)
-{
-    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-HWY_INLINE Vectors abs(const Vectors& v)
-{
-    return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)};
-}
-HWY_INLINE V dot(const Vectors& a, const Vectors& b)
-{
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b)
-{
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
-            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-HWY_INLINE Vectors divided(const Vectors& v, V by)
-{
-    return {hn::Div(v.x, by), hn::Div(v.y, by), hn::Div(v.z, by)};
-}
-HWY_INLINE Vectors normalize(const Vectors& v)
-{
-    const Vectors size = abs(v);
-    const V xy = hn::IfThenElse(hn::Gt(size.x, size.y), size.x, size.y);
-    const Vectors s = divided(v, hn::IfThenElse(hn::Gt(xy, size.z), xy, size.z));
-    return divided(s, hn::Sqrt(dot(s, s)));
 }
 // |M| v
 HWY_INLINE Vectors reach(const Affine3& m, const Vectors& v)

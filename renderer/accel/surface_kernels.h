@@ -3,7 +3,6 @@
 //
 // Frame    given in the mesh's own frame, found in both.
 // Promise  the same bits as of one hit, on every processor.
-// Cost     about a quarter of that; no allocation.
 #pragma once
 
 #include "renderer/accel/placement.h"

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "renderer/math/transcendental_lanes-inl.h"
+#include "renderer/math/vec3_lanes-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -45,7 +46,7 @@ HWY_INLINE V sum_of_arc_cosines(V a, V b)
 }
 HWY_INLINE V dot(const V (&v)[3], Vec3d w)
 {
-    return hn::Add(hn::Add(hn::Mul(v[0], set(w.x)), hn::Mul(v[1], set(w.y))), hn::Mul(v[2], set(w.z)));
+    return dot(Vec3Lanes<V>{v[0], v[1], v[2]}, splat(D(), w));
 }
 
 // spherical_sampling.cpp says what these are.
@@ -95,16 +96,7 @@ HWY_INLINE void draw(const RectangleView& r, RectangleRun& run, std::size_t firs
         const V seen_at = hn::Add(across, hn::Mul(z, z0));
         way[axis] = hn::Sub(hn::Add(point[axis], seen_at), point[axis]);
     }
-    // length() scales first.
-    V largest = hn::Abs(way[0]);
-    for (std::size_t axis = 1; axis < 3; ++axis)
-        largest = most(d, hn::Abs(way[axis]), largest);
-    V squares = zero;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const V scaled = hn::Div(way[axis], largest), square = hn::Mul(scaled, scaled);
-        squares = axis == 0 ? square : hn::Add(squares, square);
-    }
-    const V distance = hn::IfThenElseZero(hn::Gt(largest, zero), hn::Mul(largest, hn::Sqrt(squares)));
+    const V distance = length(Vec3Lanes<V>{way[0], way[1], way[2]});
     hn::Store(distance, d, run.distance + first);
     for (std::size_t axis = 0; axis < 3; ++axis)
         hn::Store(hn::Div(way[axis], distance), d, run.direction[axis] + first);

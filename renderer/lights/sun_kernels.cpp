@@ -2,7 +2,6 @@
 
 #include "renderer/math/kernel_targets.h"
 
-#include <algorithm>
 #include <vector>
 
 // This file is compiled once for every target of Highway; what is above, for the baseline alone.
@@ -13,6 +12,8 @@
 #include <hwy/highway.h>
 
 #include "renderer/math/transcendental_lanes-inl.h"
+#include "renderer/math/vec3_lanes-inl.h"
+#include "renderer/sampling/sample2_lanes-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -23,50 +24,31 @@ using D = hn::CappedTag<double, 8>;
 using V = hn::Vec<D>;
 constexpr std::size_t kLanes = hn::MaxLanes(D());
 
-HWY_INLINE V set(double x)
-{
-    return hn::Set(D(), x);
-}
-
-HWY_INLINE void draw(const Sun& sun, const double* u0, const double* u1, double (&out)[3][kLanes])
+// sun.cpp's sample().
+HWY_INLINE Vec3Lanes<V> draw(const Sun& sun, V u0, V u1)
 {
     const D d;
-    const V off = hn::Mul(hn::Load(d, u0), set(sun.one_minus_cosine));
-    const V sine = hn::Sqrt(most(d, set(0), hn::Mul(off, hn::Sub(set(2), off))));
-    const SineCosine<D> around = sin_cos(d, hn::Mul(set(2 * kPi), hn::Load(d, u1)));
-    const V ahead = hn::Sub(set(1), off);
-    V way[3];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const V across = hn::Add(hn::Mul(set(sun.across[axis]), around.cosine),
-                                 hn::Mul(set(sun.upward[axis]), around.sine));
-        way[axis] = hn::Add(hn::Mul(set(sun.toward[axis]), ahead), hn::Mul(across, sine));
-    }
-    // normalize() scales first.
-    V largest = most(d, hn::Abs(way[1]), hn::Abs(way[0]));
-    largest = most(d, hn::Abs(way[2]), largest);
-    for (V& along : way)
-        along = hn::Div(along, largest);
-    const V squares =
-        hn::Add(hn::Add(hn::Mul(way[0], way[0]), hn::Mul(way[1], way[1])), hn::Mul(way[2], way[2]));
-    const V length = hn::Sqrt(squares);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        hn::Store(hn::Div(way[axis], length), d, out[axis]);
+    const V off = hn::Mul(u0, hn::Set(d, sun.one_minus_cosine));
+    const V sine = hn::Sqrt(most(d, hn::Zero(d), hn::Mul(off, hn::Sub(hn::Set(d, 2), off))));
+    const SineCosine<D> around = sin_cos(d, hn::Mul(hn::Set(d, 2 * kPi), u1));
+    const Vec3Lanes<V> across =
+        add(times(splat(d, sun.across), around.cosine), times(splat(d, sun.upward), around.sine));
+    const Vec3Lanes<V> ahead = times(splat(d, sun.toward), hn::Sub(hn::Set(d, 1), off));
+    return normalize(add(ahead, times(across, sine)));
 }
 
 void draw_all(const Sun& sun, std::span<const Sample2> u, std::span<Vec3d> out)
 {
-    alignas(64) double u0[kLanes], u1[kLanes], drawn[3][kLanes];
-    for (std::size_t first = 0; first < u.size(); first += kLanes) {
-        const std::size_t count = std::min(kLanes, u.size() - first);
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            const Sample2& numbers = u[first + std::min(i, count - 1)];
-            u0[i] = static_cast<double>(numbers.u0);
-            u1[i] = static_cast<double>(numbers.u1);
-        }
-        draw(sun, u0, u1, drawn);
+    const D d;
+    alignas(64) double x[kLanes], y[kLanes], z[kLanes];
+    for_lanes_of(d, u, [&](std::size_t first, std::size_t count, V u0, V u1) HWY_ATTR {
+        const Vec3Lanes<V> toward = draw(sun, u0, u1);
+        hn::Store(toward.x, d, x);
+        hn::Store(toward.y, d, y);
+        hn::Store(toward.z, d, z);
         for (std::size_t i = 0; i < count; ++i)
-            out[first + i] = {drawn[0][i], drawn[1][i], drawn[2][i]};
-    }
+            out[first + i] = {x[i], y[i], z[i]};
+    });
 }
 
 } // namespace

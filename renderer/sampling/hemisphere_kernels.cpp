@@ -2,7 +2,6 @@
 
 #include "renderer/math/kernel_targets.h"
 
-#include <algorithm>
 #include <vector>
 
 // This file is compiled once for every target of Highway; what is above, for the baseline alone.
@@ -13,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "renderer/math/transcendental_lanes-inl.h"
+#include "renderer/sampling/sample2_lanes-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -28,13 +28,12 @@ struct DirectionLanes {
 };
 
 // warp.cpp says why.
-HWY_INLINE void draw(const double* u0, const double* u1, DirectionLanes& out)
+HWY_INLINE void draw(V u0, V u1, DirectionLanes& out)
 {
     const D d;
     const hn::Rebind<float, D> f;
     const auto set = [](double value) HWY_ATTR { return hn::Set(D(), value); };
-    const V a = hn::Sub(hn::Mul(set(2), hn::Load(d, u0)), set(1)),
-            b = hn::Sub(hn::Mul(set(2), hn::Load(d, u1)), set(1));
+    const V a = hn::Sub(hn::Mul(set(2), u0), set(1)), b = hn::Sub(hn::Mul(set(2), u1), set(1));
     const auto a_is_larger = hn::Gt(hn::Abs(a), hn::Abs(b));
     const V radius = hn::IfThenElse(a_is_larger, a, b), other = hn::IfThenElse(a_is_larger, b, a);
     const SineCosine<D> of = sin_cos_near_zero(d, hn::Mul(set(kPi / 4), hn::Div(other, radius)));
@@ -50,19 +49,12 @@ HWY_INLINE void draw(const double* u0, const double* u1, DirectionLanes& out)
 
 void draw_all(std::span<const Sample2> u, std::span<Vec3f> out)
 {
-    alignas(64) double u0[kLanes], u1[kLanes];
     DirectionLanes drawn;
-    for (std::size_t first = 0; first < u.size(); first += kLanes) {
-        const std::size_t count = std::min(kLanes, u.size() - first);
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            const Sample2& numbers = u[first + std::min(i, count - 1)];
-            u0[i] = static_cast<double>(numbers.u0);
-            u1[i] = static_cast<double>(numbers.u1);
-        }
+    for_lanes_of(D(), u, [&](std::size_t first, std::size_t count, V u0, V u1) HWY_ATTR {
         draw(u0, u1, drawn);
         for (std::size_t i = 0; i < count; ++i)
             out[first + i] = {drawn.x[i], drawn.y[i], drawn.z[i]};
-    }
+    });
 }
 
 } // namespace

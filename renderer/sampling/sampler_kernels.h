@@ -2,7 +2,6 @@
 // AVX2, SSE4, NEON and none of them.
 //
 // Promise  the same bits as of one, on every processor.
-// Cost     about a fifth of that where vectors hold sixteen numbers; no allocation.
 #pragma once
 
 #include "renderer/sampling/sampler.h"
