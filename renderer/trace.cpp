@@ -4,6 +4,7 @@
 #include "renderer/integrators/path.h"
 #include "renderer/integrators/probes.h"
 #include "renderer/integrators/whitted.h"
+#include "renderer/math/uninitialized.h"
 #include "renderer/sampling/sampler_kernels.h"
 
 #include <algorithm>
@@ -68,19 +69,20 @@ private:
         PairRun run;
         for (std::size_t i = 0; i < count_; ++i)
             run.set(i, *samples_[i].sampler, samples_[i].number, static_cast<std::uint32_t>(dimension));
-        draw_pairs()(run, out.first(count_));
+        draw_pairs()(run, out);
     }
 
     void set_rays()
     {
         const Camera& camera = scene_.camera();
-        Sample2 jitter[kMostSamples], lens[kMostSamples];
-        draw(Dimension::pixel, jitter);
-        if (camera.needs_lens()) draw(Dimension::lens, lens);
+        const bool needs_lens = camera.needs_lens();
+        Uninitialized<Sample2, kMostSamples> jitter, lens;
+        draw(Dimension::pixel, jitter.first(count_));
+        if (needs_lens) draw(Dimension::lens, lens.first(count_));
         for (std::size_t i = 0; i < count_; ++i)
             samples_[i].ray = camera.ray(places_[i].x + static_cast<double>(jitter[i].u0),
                                          places_[i].y + static_cast<double>(jitter[i].u1),
-                                         lens[i]);
+                                         needs_lens ? lens[i] : Sample2{});
     }
 
     void add_layers()

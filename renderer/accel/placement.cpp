@@ -64,15 +64,6 @@ std::optional<Placement> Placement::at(const Affine3& world_from_object)
                      world_from_object == Affine3{}};
 }
 
-Ray Placement::to_object(const Ray& world_ray) const
-{
-    if (is_identity) return world_ray;
-    return {object_from_world.point(world_ray.origin),
-            object_from_world.vector(world_ray.direction),
-            world_ray.t_min,
-            world_ray.t_max};
-}
-
 SurfacePoint Placement::to_world(const SurfacePoint& object_point) const
 {
     if (is_identity) return object_point;

@@ -18,7 +18,14 @@ struct Placement {
     // Nothing if `world_from_object` is singular.
     static std::optional<Placement> at(const Affine3& world_from_object);
 
-    Ray to_object(const Ray& world_ray) const;
+    Ray to_object(const Ray& world_ray) const
+    {
+        if (is_identity) return world_ray;
+        return {object_from_world.point(world_ray.origin),
+                object_from_world.vector(world_ray.direction),
+                world_ray.t_min,
+                world_ray.t_max};
+    }
     SurfacePoint to_world(const SurfacePoint& object_point) const;
 };
 

@@ -45,7 +45,7 @@ public:
     }
 
     // Of what `items` holds from `begin` on. False: a leaf.
-    bool split(ItemRun& items, std::size_t begin, const Run& run, Halves& halves)
+    bool split(ItemRun& items, std::size_t begin, const Run& run, Halves& halves) const
     {
         const std::span<TriangleItem> here = items.from(begin);
         const CutRule rule = cut_rule(here.size(), run.depth, options_);
@@ -84,7 +84,7 @@ private:
                   const Sides<float>* whole,
                   double limit,
                   Sides<float>& sides,
-                  std::size_t& made)
+                  std::size_t& made) const
     {
         const std::size_t count = items.size() - begin;
         const double area = half_area(run.bounds.box());
@@ -112,7 +112,7 @@ private:
             both.lower[axis] = std::max(a.lower[axis], b.lower[axis]);
             both.upper[axis] = std::min(a.upper[axis], b.upper[axis]);
         }
-        return half_area(both);
+        return both.empty() ? 0 : half_area(both);
     }
 
     const TriangleParts& parts_;
@@ -150,7 +150,7 @@ public:
     }
 
 private:
-    Splitter splitter_;
+    const Splitter& splitter_;
     ItemRun items_;
     const std::stop_token& stop_;
     Grown& out_;
@@ -198,14 +198,13 @@ struct Crown {
         while (!open.empty() && !stop.stop_requested()) {
             std::vector<Open> level = std::exchange(open, {});
             std::vector<Halves> halves(level.size());
-            std::vector<Open> right(level.size());
+            std::vector<ItemRun> right(level.size());
             pool.run(
                 level.size(),
                 [&](std::size_t i, unsigned) {
-                    Splitter own = splitter;
                     ItemRun& items = level[i].items;
-                    own.split(items, 0, level[i].run, halves[i]); // runs so long are no leaves
-                    right[i].items = part(items, halves[i]);
+                    splitter.split(items, 0, level[i].run, halves[i]); // runs so long are no leaves
+                    right[i] = part(items, halves[i]);
                 },
                 stop);
             if (stop.stop_requested()) return;
@@ -215,7 +214,7 @@ struct Crown {
                 depth = std::max(depth, level[i].run.depth + 1);
                 place_of(level[i]) = node_over(level[i].run.bounds, pair, 0);
                 take({level[i].items, halves[i].side[0], pair, 0});
-                take({right[i].items, halves[i].side[1], pair, 1});
+                take({right[i], halves[i].side[1], pair, 1});
             }
         }
     }

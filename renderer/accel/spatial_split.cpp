@@ -34,7 +34,10 @@ struct LanesBox {
         alignas(16) float l[4], u[4];
         lower.store(l);
         upper.store(u);
-        return renderer::half_area({{l[0], l[1], l[2]}, {u[0], u[1], u[2]}});
+        const Bounds3f box{{l[0], l[1], l[2]}, {u[0], u[1], u[2]}};
+        return box.empty()
+                   ? 0
+                   : renderer::half_area(box); // empty: what is counted there is no more of its triangle
     }
 };
 
@@ -113,13 +116,6 @@ private:
 };
 
 } // namespace
-
-double half_area(const Bounds3f& box)
-{
-    if (box.empty()) return 0;
-    const Vec3d e = to_double(box.upper) - to_double(box.lower);
-    return e.x * e.y + e.y * e.z + e.z * e.x;
-}
 
 TriangleItem TriangleParts::part(const TriangleItem& item, unsigned axis, float from, float to) const
 {

@@ -17,9 +17,6 @@ namespace renderer {
 
 using TriangleItem = BuildItem<float>;
 
-// Half the area of a box's surface; 0 of an empty one.
-double half_area(const Bounds3f& box);
-
 // A run with room behind it for what cuts add: a view of places that somebody else keeps.
 class ItemRun {
 public:

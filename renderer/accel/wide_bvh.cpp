@@ -11,12 +11,6 @@ namespace {
 
 constexpr std::size_t kPieces = 256; // subtrees that threads share, where there are so many
 
-double half_area(const BvhNode<float>& node)
-{
-    const Vec3d e = to_double(node.upper) - to_double(node.lower);
-    return e.x * e.y + e.y * e.z + e.z * e.x;
-}
-
 WideNode empty_node()
 {
     WideNode node{};
@@ -109,7 +103,7 @@ private:
         double area[WideNode::kChildren]; // of inner ones
         const auto put = [&](unsigned at, std::uint32_t child) {
             chosen.node[at] = child;
-            area[at] = node(child).count == 0 ? half_area(node(child)) : -1;
+            area[at] = node(child).count == 0 ? half_area({node(child).lower, node(child).upper}) : -1;
         };
         put(chosen.count++, number); // stays where the whole tree is one leaf
         while (chosen.count < WideNode::kChildren) {

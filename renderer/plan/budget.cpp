@@ -198,10 +198,12 @@ Budget predict(const SceneDescription& scene,
     for (const ObjectDescription& object : scene.objects)
         b.mesh_bytes += emitters_of(object, scene, meshes) * kEmitterBytes;
     b.building_bytes = std::max(scene.objects.size() * kInstanceBuildingBytes, tree_building_bytes(joined));
-    const std::vector<MeshUse> uses = uses_of(scene, meshes);
-    const MeshTrees trees(scene, settings);
-    for (std::size_t i = 0; i < meshes.size(); ++i)
-        add_mesh(b, meshes[i], uses[i], trees.of(meshes[i].triangles));
+    if (!meshes.empty()) {
+        const std::vector<MeshUse> uses = uses_of(scene, meshes);
+        const MeshTrees trees(scene, settings);
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            add_mesh(b, meshes[i], uses[i], trees.of(meshes[i].triangles));
+    }
     if (const auto* const sky =
             scene.environment ? std::get_if<ImageEnvironment>(&*scene.environment) : nullptr;
         sky != nullptr && sky->image < images.size())
