@@ -2,6 +2,7 @@
 
 #include "api/build_info.h"
 #include "api/job_view.h"
+#include "api/words/word_table.h"
 #include "clients/cli/interrupt.h"
 #include "clients/cli/local_commands.h"
 #include "clients/cli/remote_commands.h"
@@ -148,11 +149,14 @@ void add_render(CommandLine& words)
         "--tile",
         options.tile_px,
         "side of a tile in pixels (default: as the scene says, else 16); the picture does not depend on it");
-    const std::map<std::string, renderer::BvhSplit> splits{{"sah", renderer::BvhSplit::sah},
-                                                           {"midpoint", renderer::BvhSplit::midpoint},
-                                                           {"spatial", renderer::BvhSplit::spatial}};
+    std::map<std::string, renderer::BvhSplit> splits;
+    std::string split_names;
+    for (const api::Word& word : api::words_for<renderer::BvhSplit>()) {
+        splits.emplace(word.name, static_cast<renderer::BvhSplit>(word.value));
+        split_names += (split_names.empty() ? "" : "|") + std::string(word.name);
+    }
     command->add_option("--split", options.split, "how trees over triangles are split; for measuring")
-        ->transform(CLI::CheckedTransformer(splits).description("sah|midpoint|spatial"));
+        ->transform(CLI::CheckedTransformer(splits).description(split_names));
     add_quiet(*command, options.quiet);
 }
 

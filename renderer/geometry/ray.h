@@ -8,6 +8,8 @@
 
 #include "renderer/math/vec3.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace renderer {
@@ -31,6 +33,12 @@ bool is_traceable(const BasicRay<T>& ray)
 {
     return is_finite(ray.origin) && is_finite(ray.direction) && ray.t_min < ray.t_max &&
            max_component(abs(ray.direction)) >= std::numeric_limits<T>::min();
+}
+
+// Where a ray may end whose best hit so far is at t: past it, so that ties are still seen.
+inline double just_past(double t, double t_max)
+{
+    return std::min(t_max, std::nextafter(t, std::numeric_limits<double>::infinity()));
 }
 
 } // namespace renderer

@@ -1,3 +1,4 @@
+#include "api/words/word_table.h"
 #include "tests/bench/bar_chart.h"
 #include "tests/bench/evaluation.h"
 #include "tests/bench/machine.h"
@@ -31,13 +32,10 @@ const char* name_of(Scheduler scheduler)
 
 json acceleration_json(const AccelerationSettings& a)
 {
-    const char* const levels = a.levels == BvhLevels::two    ? "two"
-                               : a.levels == BvhLevels::mesh ? "mesh"
-                                                             : "none";
-    return {{"bvh",
-             {{"split", a.split == BvhSplit::midpoint ? "midpoint" : "sah"},
-              {"width", a.width == BvhWidth::wide ? "wide" : "binary"},
-              {"levels", levels}}},
+    const auto word = [](auto value) {
+        return api::name_of(api::words_for<decltype(value)>(), static_cast<int>(value));
+    };
+    return {{"bvh", {{"split", word(a.split.value())}, {"width", word(a.width)}, {"levels", word(a.levels)}}},
             {"bounds", a.bounds},
             {"threads", a.threads},
             {"tile", a.tile_px}};

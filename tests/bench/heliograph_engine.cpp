@@ -1,3 +1,4 @@
+#include "api/words/word_table.h"
 #include "renderer/accel/mesh_bvh.h"
 #include "renderer/parallel/thread_pool.h"
 #include "tests/bench/fresh_process.h"
@@ -109,15 +110,7 @@ private:
 
     std::string split_name() const
     {
-        switch (split_) {
-        case BvhSplit::sah:
-            return "sah";
-        case BvhSplit::midpoint:
-            return "midpoint";
-        case BvhSplit::spatial:
-            return "spatial";
-        }
-        return {};
+        return std::string(api::name_of(api::words_for<BvhSplit>(), static_cast<int>(split_)));
     }
     TriangleRun all_triangles() const { return {0, static_cast<std::uint32_t>(mesh_.triangles.size())}; }
 
@@ -131,7 +124,7 @@ private:
 
 BvhSplit split_named(const std::string& name)
 {
-    return name == "midpoint" ? BvhSplit::midpoint : name == "spatial" ? BvhSplit::spatial : BvhSplit::sah;
+    return static_cast<BvhSplit>(api::find_word(api::words_for<BvhSplit>(), name)->value);
 }
 
 std::vector<std::unique_ptr<RayEngine>>

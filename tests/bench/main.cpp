@@ -1,4 +1,5 @@
 // heliograph-bench: figures beside a peer or a baseline in the same run. Nothing here is a test.
+#include "api/words/word_table.h"
 #include "tests/bench/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -56,7 +57,7 @@ void add_import(CLI::App& app)
 void add_split(CLI::App& to, std::string& split)
 {
     to.add_option("--split", split, "how our tree is built")
-        ->check(CLI::IsMember({"sah", "midpoint", "spatial"}))
+        ->check(CLI::IsMember(api::names_of(api::words_for<renderer::BvhSplit>())))
         ->capture_default_str();
 }
 

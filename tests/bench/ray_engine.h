@@ -43,7 +43,7 @@ public:
     trace(const RaySet& set, std::span<const FloatRay> rays, FoundHit* found = nullptr) const = 0;
 };
 
-// As `--split` names it: "sah", "midpoint" or "spatial".
+// Of a word of the contract.
 renderer::BvhSplit split_named(const std::string& name);
 
 // With the best kernel of this processor, or one engine a kernel, the best first. The mesh outlives them.

@@ -212,18 +212,25 @@ struct Balls {
     }
 };
 
+// The mesh's own glass, before a sky of one colour.
+TestScene mesh_before_the_sky(const Mesh& mesh, TransportType transport, Rgb sky = {1, 1, 1})
+{
+    TestScene test = ball_before_the_sky(glass(1.5), transport);
+    test.description.environment = ColorEnvironment{sky};
+    test.description.transport.max_depth = 8;
+    test.description.objects[0].shape = MeshShape{};
+    test.description.objects[0].material.reset();
+    test.meshes = {mesh};
+    return test;
+}
+
 TEST(GlassBody, OfAMeshsOwnMaterialIsAsOneThatTheSceneNames)
 {
     const Balls balls;
     for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
-        TestScene named = ball_before_the_sky(glass(1.5), transport), own = named;
-        for (TestScene* test : {&named, &own}) {
-            test->description.environment = ColorEnvironment{{1, 0.5, 0.25}};
-            test->description.transport.max_depth = 8;
-            test->description.objects[0].shape = MeshShape{};
-            test->meshes = {balls.glass};
-        }
-        own.description.objects[0].material.reset();
+        const TestScene own = mesh_before_the_sky(balls.glass, transport, {1, 0.5, 0.25});
+        TestScene named = own;
+        named.description.objects[0].material = 0;
         EXPECT_EQ(tests::digest(render_description(own).film), tests::digest(render_description(named).film));
     }
 }
@@ -235,12 +242,7 @@ TEST(GlassBody, OfAColourTintsWhatPassesEachOfItsBoundaries)
     for (const double roughness : {0.0, 0.3})
         for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
             if (roughness > 0 && transport == TransportType::whitted) continue;
-            TestScene test = ball_before_the_sky(glass(1.5), transport);
-            test.description.environment = ColorEnvironment{{1, 1, 1}};
-            test.description.transport.max_depth = 8;
-            test.description.objects[0].shape = MeshShape{};
-            test.description.objects[0].material.reset();
-            test.meshes = {balls.glass};
+            TestScene test = mesh_before_the_sky(balls.glass, transport);
             MeshMaterial& material = test.meshes[0].materials[0];
             material.ior = 1;
             material.is_physical = roughness > 0;
@@ -260,12 +262,7 @@ TEST(GlassBody, OfAPictureOfOneColourIsTintedAsOfThatColour)
     const Balls balls;
     constexpr Rgb kTint{1, 0.5f, 0.25f};
     for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
-        TestScene colour = ball_before_the_sky(glass(1.5), transport);
-        colour.description.environment = ColorEnvironment{{1, 1, 1}};
-        colour.description.transport.max_depth = 8;
-        colour.description.objects[0].shape = MeshShape{};
-        colour.description.objects[0].material.reset();
-        colour.meshes = {balls.glass};
+        TestScene colour = mesh_before_the_sky(balls.glass, transport);
         Mesh& mesh = colour.meshes[0];
         mesh.uvs.assign(mesh.positions.size(), {0.5f, 0.5f});
         mesh.materials[0].is_physical = true;
@@ -287,16 +284,10 @@ TEST(GlassBody, WithinAnotherOfTheSameMeshIsABodyOfItsOwn)
 {
     const Balls balls;
     for (const TransportType transport : {TransportType::whitted, TransportType::path}) {
-        TestScene apart = ball_before_the_sky(glass(1.5), transport);
-        apart.description.environment = ColorEnvironment{{1, 0.5, 0.25}};
-        apart.description.transport.max_depth = 8;
-        apart.description.objects[0].shape = MeshShape{};
-        apart.description.objects[0].material.reset();
-        TestScene one = apart;
+        TestScene one = mesh_before_the_sky(balls.both_in_one(), transport, {1, 0.5, 0.25}), apart = one;
         apart.meshes = {balls.glass, balls.water};
         apart.description.objects.push_back(apart.description.objects[0]);
         apart.description.objects[1].shape = MeshShape{.mesh = 1, .part = {}};
-        one.meshes = {balls.both_in_one()};
         const RenderResult a = render_description(apart), b = render_description(one);
         EXPECT_EQ(tests::digest(a.film), tests::digest(b.film));
         EXPECT_LT(tests::mean_of(a.film.mean()).r, 0.9f) << "the water absorbs";

@@ -1,5 +1,6 @@
 // Every kernel that this processor can run: the same directions to a sun as drawn one by one.
 #include "renderer/lights/sun_kernels.h"
+#include "tests/renderer/sampling/edge_numbers.h"
 
 #include <gtest/gtest.h>
 
@@ -9,19 +10,6 @@
 namespace {
 
 using namespace renderer;
-
-std::vector<Sample2> numbers()
-{
-    constexpr float kEdges[] = {0, 0x1p-24f, 0.125f, 0.25f, 0.5f, 0.75f, 1 - 0x1p-24f};
-    std::vector<Sample2> numbers;
-    for (const float u0 : kEdges)
-        for (const float u1 : kEdges)
-            numbers.push_back({u0, u1});
-    const PixelSampler sampler(5, 3, 4);
-    for (std::uint32_t i = 0; i < 1000; ++i)
-        numbers.push_back(sampler.sample_2d(i, 0));
-    return numbers;
-}
 
 Sun sun_of(Vec3d travels, double radius_deg)
 {
@@ -35,7 +23,7 @@ Sun sun_of(Vec3d travels, double radius_deg)
 
 TEST(SunKernels, DrawAsOneByOneToTheBit)
 {
-    const std::vector<Sample2> u = numbers();
+    const std::vector<Sample2> u = tests::edge_numbers();
     for (const DrawTowardsSun kernel : all_draw_towards_sun())
         for (const Vec3d travels :
              {Vec3d{0, -1, 0}, Vec3d{0, 0, 1}, Vec3d{0, 0, -1}, Vec3d{-0.5, -1, -0.6}, Vec3d{3, 1e-9, -1}})
@@ -50,7 +38,7 @@ TEST(SunKernels, DrawAsOneByOneToTheBit)
 
 TEST(SunKernels, WriteAsManyAsThereAre)
 {
-    const std::vector<Sample2> u = numbers();
+    const std::vector<Sample2> u = tests::edge_numbers();
     const Sun sun = sun_of({1, -2, 3}, 5);
     for (const DrawTowardsSun kernel : all_draw_towards_sun())
         for (std::size_t count = 0; count < 20; ++count) {
