@@ -209,8 +209,10 @@ private:
         }
     }
 
+    // Children that are leaves, by their codes' sign.
     static HWY_INLINE unsigned leaves_of(const WideNode& node)
     {
+        static_assert(ChildCode::kLeaf == 1u << 31);
         const hn::Rebind<std::int32_t, Eight> d;
         unsigned bits = 0;
         for (std::size_t lane = 0; lane < WideNode::kChildren; lane += hn::MaxLanes(d))

@@ -18,14 +18,6 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-// Nothing of a sphere or disk.
-const Mesh* mesh_behind(const InstanceGeometry& geometry)
-{
-    if (const auto* wide = std::get_if<MeshGeometry>(&geometry)) return wide->mesh;
-    const auto* const baseline = std::get_if<BaselineGeometry>(&geometry);
-    return baseline != nullptr ? baseline->mesh : nullptr;
-}
-
 void put(SurfaceLanes::Vectors& to, std::size_t lane, Vec3d v)
 {
     to[0][lane] = v.x;
@@ -74,6 +66,13 @@ Bounds3d object_bounds(const InstanceGeometry& geometry)
 }
 
 } // namespace
+
+const Mesh* mesh_behind(const InstanceGeometry& geometry)
+{
+    if (const auto* wide = std::get_if<MeshGeometry>(&geometry)) return wide->mesh;
+    const auto* const baseline = std::get_if<BaselineGeometry>(&geometry);
+    return baseline != nullptr ? baseline->mesh : nullptr;
+}
 
 Instance::Instance(InstanceGeometry geometry, const Placement& placement, bool visible_to_camera)
     : geometry_(geometry), placement_(placement), visible_to_camera_(visible_to_camera)
@@ -190,10 +189,9 @@ void Instance::resolve(std::span<const Ray> world_rays,
                        SceneHit* hits) const
 {
     const Mesh* const mesh = mesh_behind(geometry_);
-    constexpr int kFew = 2; // are quicker one by one
     SurfaceLanes lanes;
     std::size_t of[SurfaceLanes::kHits];
-    while (mesh != nullptr && std::popcount(which) > kFew) {
+    while (mesh != nullptr && which != 0) {
         std::size_t count = 0;
         for (; which != 0 && count < SurfaceLanes::kHits; which &= which - 1, ++count) {
             of[count] = static_cast<std::size_t>(std::countr_zero(which));

@@ -27,6 +27,9 @@ struct BaselineGeometry {
 };
 using InstanceGeometry = std::variant<MeshGeometry, Sphere, Disk, BaselineGeometry>;
 
+// nullptr of a sphere or disk.
+const Mesh* mesh_behind(const InstanceGeometry& geometry);
+
 // What a ray is for: an object may be hidden from the camera and still cast shadows and be reflected.
 enum class RayKind : std::uint8_t { camera, other };
 

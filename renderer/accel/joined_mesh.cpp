@@ -9,12 +9,6 @@ namespace renderer {
 
 namespace {
 
-const Mesh& mesh_behind(const Instance& instance)
-{
-    const auto* const wide = std::get_if<MeshGeometry>(&instance.geometry());
-    return wide != nullptr ? *wide->mesh : *std::get<BaselineGeometry>(instance.geometry()).mesh;
-}
-
 Instance whole(const PreparedMesh& mesh)
 {
     const MeshBvh* const bvh = bvh_of(mesh);
@@ -56,7 +50,7 @@ std::optional<JoinedMesh> JoinedMesh::join(std::span<const Instance> instances,
     bool more_than_floats = false;
     for (const Member& member : members) {
         const Instance& instance = instances[member.instance];
-        const Mesh& mesh = mesh_behind(instance);
+        const Mesh& mesh = *mesh_behind(instance.geometry());
         const Affine3 &there = instance.world_from_object(), &back = instance.object_from_world();
         for (std::uint32_t i = member.run.first; i < member.run.first + member.run.count; ++i) {
             const Triangle& v = mesh.triangles[i];
@@ -79,7 +73,7 @@ std::optional<JoinedMesh> JoinedMesh::join(std::span<const Instance> instances,
 SceneHit JoinedMesh::resolve(const Instance::Candidate& found, std::span<const Instance> instances) const
 {
     const Origin& origin = triangles_[found.primitive];
-    const Mesh &joined = mesh_of(*mesh_), &own = mesh_behind(instances[origin.instance]);
+    const Mesh &joined = mesh_of(*mesh_), &own = *mesh_behind(instances[origin.instance].geometry());
     const Vec3d& weights = found.barycentrics;
     const Triangle &v = joined.triangles[found.primitive], &own_v = own.triangles[origin.primitive];
     SceneHit hit;

@@ -269,8 +269,8 @@ private:
     Uninitialized<LitPoint, kMostSamples> points_;
     Path* of_point_[kMostSamples];
     Uninitialized<Rgb, kMostSamples> added_;
-    PairRun
-        pairs_; // of turns at diffuse surfaces: what they ask for, and the numbers to draw directions with
+    // Of turns at diffuse surfaces: what they ask for, and the numbers that directions are drawn with.
+    PairRun pairs_;
     Uninitialized<Sample2, kMostSamples> numbers_;
     Uninitialized<Vec3f, kMostSamples> drawn_;
 };
