@@ -37,6 +37,9 @@ struct alignas(2 * sizeof(BvhNode<T>)) BvhPair {
     BvhNode<T> child[2];
 };
 
+// Of a tree's root. All others: 2 * pair + side.
+inline constexpr std::uint32_t kRootNumber = 0xffffffff;
+
 template <typename T>
 struct Bvh {
     BvhNode<T> root{};
@@ -44,6 +47,11 @@ struct Bvh {
     PlainArray<std::uint32_t> order; // primitives, leaf by leaf
     unsigned depth = 0;              // levels of inner nodes
 
+    BvhNode<T>& node(std::uint32_t number)
+    {
+        return number == kRootNumber ? root : pairs[number >> 1].child[number & 1];
+    }
+    const BvhNode<T>& node(std::uint32_t number) const { return const_cast<Bvh&>(*this).node(number); }
     bool empty() const { return order.empty(); }
     std::uint64_t size_bytes() const { return sizeof *this + pairs.size_bytes() + order.size_bytes(); }
 };

@@ -3,6 +3,7 @@
 #include "renderer/accel/exact_ray.h"
 #include "renderer/accel/exact_test.h"
 #include "renderer/accel/ray_run.h"
+#include "renderer/accel/reinsertion.h"
 #include "renderer/accel/spatial_bvh.h"
 #include "renderer/math/floating_point_mode.h"
 
@@ -26,11 +27,12 @@ std::optional<MeshBvh> MeshBvh::build(
     built.scale_ = triangles.scale;
     const BvhOptions options{
         .split = split, .leaf_size = 2 * TriangleBlock::kLanes, .block = TriangleBlock::kLanes};
-    const std::optional<Bvh<float>> bvh =
+    std::optional<Bvh<float>> bvh =
         split == BvhSplit::spatial
             ? build_spatial_bvh(mesh, triangles.scale, std::move(triangles.items), options, pool, stop)
             : build_bvh<float>(std::move(triangles.items), options, pool, stop);
     if (!bvh) return std::nullopt;
+    if (split != BvhSplit::midpoint) reinsert_largest(*bvh, pool, stop);
 
     const auto corner = [&](std::uint32_t triangle, std::size_t k) {
         return mesh.positions[mesh.triangles[triangle][k]] * built.scale_;

@@ -1,7 +1,8 @@
 #include "renderer/accel/wide_bvh.h"
 
+#include "renderer/accel/wide_children.h"
+
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <vector>
 
@@ -21,12 +22,7 @@ WideNode empty_node()
     return node;
 }
 
-// Nodes of the binary tree by number: 2 * pair + side, or the root.
-constexpr std::uint32_t kRoot = 0xffffffff;
-struct Chosen {
-    std::array<std::uint32_t, WideNode::kChildren> node; // the first `count`
-    unsigned count = 0;
-};
+using Chosen = WideChildren::Chosen;
 
 // A subtree: its nodes in the order in which they will lie, inner children of each in a row.
 struct Piece {
@@ -40,7 +36,7 @@ struct Piece {
 class Widening {
 public:
     Widening(const Bvh<float>& bvh, const LeafFiller& leaves, ThreadPool& pool)
-        : bvh_(bvh), leaves_(leaves), pool_(pool)
+        : bvh_(bvh), leaves_(leaves), pool_(pool), children_(bvh, pool)
     {
     }
 
@@ -91,34 +87,11 @@ private:
         unsigned depth;
     };
 
-    const BvhNode<float>& node(std::uint32_t number) const
-    {
-        return number == kRoot ? bvh_.root : bvh_.pairs[number >> 1].child[number & 1];
-    }
-
-    // Up to eight nodes that become the children of one: the largest inner ones are opened first.
-    Chosen children_of(std::uint32_t number) const
-    {
-        Chosen chosen;
-        double area[WideNode::kChildren]; // of inner ones
-        const auto put = [&](unsigned at, std::uint32_t child) {
-            chosen.node[at] = child;
-            area[at] = node(child).count == 0 ? half_area({node(child).lower, node(child).upper}) : -1;
-        };
-        put(chosen.count++, number); // stays where the whole tree is one leaf
-        while (chosen.count < WideNode::kChildren) {
-            const auto largest = static_cast<unsigned>(std::max_element(area, area + chosen.count) - area);
-            if (area[largest] < 0) break; // leaves only
-            const std::uint32_t pair = 2 * node(chosen.node[largest]).first;
-            put(largest, pair);
-            put(chosen.count++, pair + 1);
-        }
-        return chosen;
-    }
+    const BvhNode<float>& node(std::uint32_t number) const { return bvh_.node(number); }
 
     std::uint32_t add_node(Piece& piece, std::uint32_t number) const
     {
-        piece.nodes.push_back(children_of(number));
+        piece.nodes.push_back(children_.of(number));
         piece.first_inner.push_back(0);
         return static_cast<std::uint32_t>(piece.nodes.size() - 1);
     }
@@ -138,7 +111,7 @@ private:
     // Level by level, until there are enough pieces to share.
     void choose_first()
     {
-        open_.push_back({kRoot, 1});
+        open_.push_back({kRootNumber, 1});
         for (std::size_t next = 0; next < open_.size() && open_.size() - next < kPieces; ++next) {
             const Open here = open_[next];
             const std::uint32_t at = add_node(first_, here.node);
@@ -184,6 +157,7 @@ private:
     const Bvh<float>& bvh_;
     const LeafFiller& leaves_;
     ThreadPool& pool_;
+    WideChildren children_;
     std::vector<Open> open_; // in the order of the first nodes and the pieces' roots
     Piece first_;
 };
