@@ -25,8 +25,12 @@ std::optional<MeshBvh> MeshBvh::build(
     built.bounds_ = triangles.bounds;
     if (triangles.items.empty()) return built;
     built.scale_ = triangles.scale;
-    const BvhOptions options{
-        .split = split, .leaf_size = 2 * TriangleBlock::kLanes, .block = TriangleBlock::kLanes};
+    // A pair costs less than a block of triangles, as eight children are looked at together; but counted so, trees
+    // get small leaves that are slower, and larger themselves.
+    const BvhOptions options{.split = split,
+                             .leaf_size = 2 * TriangleBlock::kLanes,
+                             .block = TriangleBlock::kLanes,
+                             .node_cost = 2};
     std::optional<Bvh<float>> bvh =
         split == BvhSplit::spatial
             ? build_spatial_bvh(mesh, triangles.scale, std::move(triangles.items), options, pool, stop)
