@@ -1,5 +1,5 @@
 #include "renderer/accel/wide_bvh.h"
-#include "tests/renderer/accel/random_scenes.h"
+#include "tests/renderer/accel/random_trees.h"
 
 #include <gtest/gtest.h>
 
@@ -11,18 +11,7 @@
 namespace {
 
 using namespace renderer;
-using random_scenes::Random;
-
-Bvh<float> random_bvh(std::size_t count, ThreadPool& pool)
-{
-    Random random(3);
-    PlainArray<BuildItem<float>> items(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec3d low = random.in_box({-1, -1, -1}, {1, 1, 1});
-        items[i] = {to_float(low), i, to_float(low + random.in_box({0, 0, 0}, {.05, .05, .05}))};
-    }
-    return *build_bvh<float>(std::move(items), {.leaf_size = 8, .block = 4}, pool);
-}
+using random_trees::tree_over_boxes;
 
 // A tree whose leaves note which run of the order they hold.
 struct Widened {
@@ -96,7 +85,7 @@ TEST(WideBvh, HoldsEveryLeafOnce)
 {
     ThreadPool pool(1);
     for (const std::size_t count : {1u, 4u, 5u, 9u, 200u, 70000u}) {
-        const Bvh<float> bvh = random_bvh(count, pool);
+        const Bvh<float> bvh = tree_over_boxes(count, pool);
         expect_sound(*widened(bvh, 1), bvh);
     }
 }
@@ -104,7 +93,7 @@ TEST(WideBvh, HoldsEveryLeafOnce)
 TEST(WideBvh, IsTheSameOnAnyNumberOfThreads)
 {
     ThreadPool pool(2);
-    const Bvh<float> bvh = random_bvh(70000, pool);
+    const Bvh<float> bvh = tree_over_boxes(70000, pool);
     const auto one = widened(bvh, 1);
     ASSERT_GT(one->tree.nodes.size(), 1000u) << "large enough to have been shared";
     for (const unsigned threads : {2u, 5u}) {
@@ -121,7 +110,7 @@ TEST(WideBvh, IsTheSameOnAnyNumberOfThreads)
 TEST(WideBvh, OfNothingHasNoNodes)
 {
     ThreadPool pool(1);
-    EXPECT_TRUE(widened(random_bvh(0, pool), 1)->tree.nodes.empty());
+    EXPECT_TRUE(widened(tree_over_boxes(0, pool), 1)->tree.nodes.empty());
 }
 
 } // namespace

@@ -27,8 +27,8 @@ struct Question {
 TEST(MeshTrees, AreBuiltLongerWhereManyRaysWillRunApart)
 {
     const Question question;
-    EXPECT_EQ(question.tree(15000), MeshTree::wide_spatial);
-    EXPECT_EQ(question.tree(15001), MeshTree::wide_sah);
+    EXPECT_EQ(question.tree(7500), MeshTree::wide_spatial);
+    EXPECT_EQ(question.tree(7501), MeshTree::wide_sah);
 }
 
 TEST(MeshTrees, ArePlainWhereRaysRunAlike)
