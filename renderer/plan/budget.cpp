@@ -22,8 +22,8 @@ constexpr std::uint64_t kSumBytes = 3 * sizeof(double), kMeanBytes = 12;
 // The same of each layer: see film/layer_sums.h.
 constexpr std::array<std::uint64_t, kLayers.size()> kLayerSumBytes{16, 24, 24, 0},
     kLayerMeanBytes{4, 12, 12, 4};
-// 52 to 57 in meshes of many kinds, 65 where triangles are strewn points.
-constexpr std::uint64_t kTreeBytesPerTriangle = 56;
+// 47 to 52 in meshes of many kinds, more where triangles are strewn points.
+constexpr std::uint64_t kTreeBytesPerTriangle = 50;
 // Items twice and the binary tree, less what is there in the end.
 constexpr std::uint64_t kBuildingBytesPerTriangle = 28;
 // The scene's own words, as they came, as they were read and with every default filled in; and how an object is shaded.
