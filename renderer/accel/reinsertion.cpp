@@ -12,7 +12,7 @@ namespace renderer {
 
 namespace {
 
-// Those that are moved: a fiftieth of all pairs and this many, the largest ones.
+// Those that are moved, the largest ones: a fiftieth of all pairs, and so many more.
 constexpr std::size_t kPairsToOne = 50, kAlways = 256;
 constexpr unsigned kMostRounds = 16;
 // A round that saves a ray through the whole fewer visits than this is the last.
@@ -56,12 +56,12 @@ public:
     explicit Reinserter(Bvh<float>& tree)
         : tree_(tree), parent_(tree.pairs.size()), height_(tree.pairs.size()), touched_(tree.pairs.size())
     {
-        for (std::size_t pair = tree.pairs.size(); pair-- > 0;)
+        for (std::size_t pair = tree.pairs.size(); pair-- > 0;) {
             for (std::size_t side = 0; side < 2; ++side)
                 if (const BvhNode<float>& child = tree.pairs[pair].child[side]; child.count == 0)
                     parent_[child.first] = static_cast<std::uint32_t>(2 * pair + side);
-        for (std::size_t pair = tree.pairs.size(); pair-- > 0;)
-            height_[pair] = height_over(pair);
+            height_[pair] = height_over(pair); // of those behind it is known
+        }
         parent_[tree.root.first] = kRootNumber;
     }
 
