@@ -10,8 +10,6 @@ namespace renderer {
 
 namespace {
 
-constexpr std::size_t kPieces = 256; // subtrees that threads share, where there are so many
-
 WideNode empty_node()
 {
     WideNode node{};
@@ -112,7 +110,8 @@ private:
     void choose_first()
     {
         open_.push_back({kRootNumber, 1});
-        for (std::size_t next = 0; next < open_.size() && open_.size() - next < kPieces; ++next) {
+        for (std::size_t next = 0; next < open_.size() && open_.size() - next < WideChildren::kPieces;
+             ++next) {
             const Open here = open_[next];
             const std::uint32_t at = add_node(first_, here.node);
             first_.first_inner[at] = static_cast<std::uint32_t>(open_.size());

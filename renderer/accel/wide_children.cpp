@@ -5,12 +5,6 @@
 
 namespace renderer {
 
-namespace {
-
-constexpr std::size_t kPieces = 256; // subtrees that threads share, where there are so many
-
-} // namespace
-
 WideChildren::WideChildren(const Bvh<float>& bvh, ThreadPool& pool) : bvh_(bvh), costs_(bvh.pairs.size())
 {
     std::vector<std::uint32_t> open{kRootNumber}; // parents before children

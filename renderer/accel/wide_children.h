@@ -9,12 +9,15 @@
 #include "renderer/accel/wide_bvh.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace renderer {
 
 class WideChildren {
 public:
+    static constexpr std::size_t kPieces = 256; // subtrees that threads share, where there are so many
+
     // Not empty. The same choice on any number of threads.
     WideChildren(const Bvh<float>& bvh, ThreadPool& pool);
 

@@ -1,6 +1,6 @@
 // mesh_trees: which tree each mesh of a scene gets.
 //
-// Spatial splits (accel/spatial_bvh.h) make a tree dearer to build, by up to a microsecond a triangle, and rays that have
+// Spatial splits (accel/spatial_bvh.h) make a tree dearer to build, by up to 1.2 us a triangle, and rays that have
 // nothing in common with their neighbours cheaper, by nothing to 15 ns, as the mesh is (accel/README.md): they pay where a
 // triangle can expect many of those. From the scene's own words and the number of triangles alone, so that whoever gets meshes one by one
 // can ask for each.

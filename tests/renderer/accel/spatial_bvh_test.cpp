@@ -3,6 +3,7 @@
 #include "renderer/accel/triangle_items.h"
 #include "tests/renderer/accel/mesh_rays.h"
 #include "tests/renderer/accel/random_scenes.h"
+#include "tests/renderer/accel/random_trees.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,7 @@ using namespace renderer;
 using mesh_rays::build;
 using mesh_rays::same;
 using random_scenes::Random;
+using random_trees::half_area_of;
 
 // Long splinters in all directions among a multitude of crumbs.
 Mesh straw(std::uint32_t splinters, std::uint32_t crumbs)
@@ -48,15 +50,11 @@ Bvh<float> tree_over(const Mesh& mesh, unsigned threads)
 // The cost of a ray that meets the whole, in areas: inner nodes and blocks of leaves.
 double cost_of(const Bvh<float>& tree)
 {
-    const auto area = [](const BvhNode<float>& node) {
-        const Vec3d e = to_double(node.upper) - to_double(node.lower);
-        return e.x * e.y + e.y * e.z + e.z * e.x;
-    };
     double cost = 0;
     for (const BvhPair<float>& pair : tree.pairs)
         for (const BvhNode<float>& node : pair.child)
-            cost += area(node) * (node.count == 0 ? 1 : (node.count + 3) / 4);
-    return cost / area(tree.root);
+            cost += half_area_of(node) * (node.count == 0 ? 1 : (node.count + 3) / 4);
+    return cost / half_area_of(tree.root);
 }
 
 } // namespace

@@ -5,8 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstdint>
+#include <functional>
 #include <future>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -16,15 +20,9 @@ namespace {
 using server::SqliteConnection;
 using tests::TempFolder;
 
-// The writer is held while sixteen threads submit: when it is let go, they are in one transaction.
-TEST(GroupCommit, FoldsWhatWaitsIntoOneTransaction)
+// The writer is held while so many threads submit a request each: when it is let go, they are in one transaction.
+void run_while_held(server::GroupCommit& writer, unsigned count, const std::function<void(int)>& submit)
 {
-    const TempFolder folder;
-    auto db = std::make_unique<SqliteConnection>(folder.path() / "db", SqliteConnection::Open::create);
-    db->execute("PRAGMA journal_mode=WAL; CREATE TABLE t(n INTEGER)");
-    server::GroupCommit writer(std::move(db));
-    const auto insert = [](SqliteConnection& c) { c.execute("INSERT INTO t VALUES(1)"); };
-
     std::promise<void> entered, let_go;
     std::thread holder([&] {
         writer.run(server::Durability::synced, [&](SqliteConnection&) {
@@ -34,14 +32,25 @@ TEST(GroupCommit, FoldsWhatWaitsIntoOneTransaction)
     });
     entered.get_future().wait();
     std::vector<std::thread> threads;
-    for (int t = 0; t < 16; ++t)
-        threads.emplace_back([&] { writer.run(server::Durability::synced, insert); });
-    while (writer.waiting() < 16)
+    for (unsigned t = 0; t < count; ++t)
+        threads.emplace_back(submit, static_cast<int>(t));
+    while (writer.waiting() < count)
         std::this_thread::yield();
     let_go.set_value();
     holder.join();
     for (std::thread& thread : threads)
         thread.join();
+}
+
+TEST(GroupCommit, FoldsWhatWaitsIntoOneTransaction)
+{
+    const TempFolder folder;
+    auto db = std::make_unique<SqliteConnection>(folder.path() / "db", SqliteConnection::Open::create);
+    db->execute("PRAGMA journal_mode=WAL; CREATE TABLE t(n INTEGER)");
+    server::GroupCommit writer(std::move(db));
+    const auto insert = [](SqliteConnection& c) { c.execute("INSERT INTO t VALUES(1)"); };
+
+    run_while_held(writer, 16, [&](int) { writer.run(server::Durability::synced, insert); });
     EXPECT_EQ(writer.counts().requests, 17U);
     EXPECT_EQ(writer.counts().transactions, 2U);
 }
@@ -54,34 +63,18 @@ TEST(GroupCommit, UndoesAFailedRequestAndKeepsItsNeighbours)
     db->execute("PRAGMA journal_mode=WAL; CREATE TABLE t(n INTEGER UNIQUE)");
     server::GroupCommit writer(std::move(db));
 
-    std::promise<void> entered, let_go;
-    std::thread holder([&] {
-        writer.run(server::Durability::written, [&](SqliteConnection&) {
-            entered.set_value();
-            let_go.get_future().wait();
-        });
-    });
-    entered.get_future().wait();
     std::atomic<int> refused{0};
-    std::vector<std::thread> threads;
-    for (int t = 0; t < 6; ++t)
-        threads.emplace_back([&, t] {
-            try {
-                writer.run(server::Durability::synced, [&](SqliteConnection& c) {
-                    c.prepare("INSERT INTO t VALUES(?1)").bind(std::int64_t{t}).run();
-                    if (t == 1) throw std::runtime_error("for its own reason");
-                    if (t == 2) c.execute("INSERT INTO t VALUES(2)"); // not unique
-                });
-            } catch (const std::exception&) {
-                ++refused;
-            }
-        });
-    while (writer.waiting() < 6)
-        std::this_thread::yield();
-    let_go.set_value();
-    holder.join();
-    for (std::thread& thread : threads)
-        thread.join();
+    run_while_held(writer, 6, [&](int t) {
+        try {
+            writer.run(server::Durability::synced, [&](SqliteConnection& c) {
+                c.prepare("INSERT INTO t VALUES(?1)").bind(std::int64_t{t}).run();
+                if (t == 1) throw std::runtime_error("for its own reason");
+                if (t == 2) c.execute("INSERT INTO t VALUES(2)"); // not unique
+            });
+        } catch (const std::exception&) {
+            ++refused;
+        }
+    });
     EXPECT_EQ(refused, 2);
     EXPECT_EQ(writer.counts().transactions, 2U);
     SqliteConnection reader(file, SqliteConnection::Open::existing);
