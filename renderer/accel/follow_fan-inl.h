@@ -7,6 +7,7 @@
 #endif
 
 #include "renderer/accel/fan_leaf-inl.h"
+#include "renderer/accel/occluders.h"
 #include "renderer/accel/settle_fan-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -122,6 +123,8 @@ public:
     // Too many leaves met the fan: of rays that have not hit nothing is known, nor of any whose nearest hit was
     // asked for.
     HWY_INLINE bool gave_up() const { return leaves_ > fan_.most_leaves; }
+    // Or too few rays were left to go on together.
+    HWY_INLINE bool has_left_some() const { return gave_up() || left_few_; }
     // Enough of them to tell whether the walk paid.
     HWY_INLINE bool met_many() const { return leaves_ >= fan_.most_leaves / 4; }
 
@@ -135,6 +138,8 @@ public:
     }
 
 private:
+    static constexpr unsigned kTooFew = 4; // of rays of which any hit will do, in many leaves
+
     // Nearest first, for the ends that hits draw in.
     HWY_INLINE std::uint64_t walk_nearest()
     {
@@ -173,7 +178,7 @@ private:
         }
     }
 
-    // Any order will do: the leaves of a node at once, its inner children later.
+    // Any order will do: what hid all of the last fan first, then the leaves of a node at once, its inner children later.
     HWY_INLINE std::uint64_t walk_any()
     {
         const FanSides sides(fan_);
@@ -182,6 +187,14 @@ private:
         std::uint32_t next = 0;
         Entered entered;
         end_ = farthest_end();
+        const Occluders known = last_occluders().take(mesh_.nodes, fan_);
+        for (unsigned i = 0; i < known.count; ++i) {
+            // They may be of a mesh that was here before: any leaf of this one will do.
+            if (const std::uint32_t code = known.leaves[i];
+                (code & ChildCode::kNumber) + ((code & ChildCode::kTwoBlocks) != 0 ? 2 : 1) <= mesh_.blocks)
+                visit_leaf(code);
+            if (end_ < 0) return settle_hidden();
+        }
         for (;;) {
             const WideNode& node = mesh_.nodes[next];
             sides.enter_children(node, end_, entered);
@@ -202,11 +215,22 @@ private:
             for (; some != 0; some &= some - 1) {
                 if (++leaves_ > fan_.most_leaves) return found_.settle();
                 visit_leaf(node.child[__builtin_ctz(some)]);
-                if (end_ < 0) return found_.settle();
+                if (end_ < 0) return settle_hidden();
+                if (leaves_ > fan_.most_leaves / 3 && found_.missing() <= kTooFew) {
+                    left_few_ = true;
+                    return found_.settle();
+                }
             }
             if (waiting == 0) return found_.settle();
             next = nodes[--waiting];
         }
+    }
+
+    // All rays have hit for certain.
+    HWY_INLINE std::uint64_t settle_hidden()
+    {
+        last_occluders().put(mesh_.nodes, fan_, hiding_);
+        return found_.settle();
     }
 
     // Children that are leaves, by their codes' sign.
@@ -252,51 +276,86 @@ private:
         LeafViewer<kAnyHit>(fan_, end_)
             .see(mesh_.leaves + first, (code & ChildCode::kTwoBlocks) != 0 ? 2 : 1, seen);
         bool drawn = false;
-        for (unsigned left = seen.meeting; left != 0; left &= left - 1) {
+        for (unsigned left = seen.meeting & ~seen.faces; left != 0; left &= left - 1) {
             const auto lane = static_cast<unsigned>(__builtin_ctz(left));
-            const std::uint32_t triangle = first * TriangleBlock::kLanes + lane;
-            const bool certain = (seen.faces >> lane & 1) != 0;
-            for (unsigned groups = groups_meeting(seen, lane, certain); groups != 0; groups &= groups - 1) {
-                const auto group = static_cast<unsigned>(__builtin_ctz(groups));
-                drawn =
-                    (certain ? test_group(seen, lane, group, triangle) : ask_group(group, triangle)) || drawn;
-            }
+            for (unsigned groups = groups_near(seen, lane); groups != 0; groups &= groups - 1)
+                drawn = ask_group(static_cast<unsigned>(__builtin_ctz(groups)),
+                                  first * TriangleBlock::kLanes + lane) ||
+                        drawn;
         }
-        if (drawn) end_ = farthest_end();
+        if (const unsigned certain = seen.meeting & seen.faces; certain != 0)
+            for (std::uint64_t pairs = pairs_meeting(seen, certain); pairs != 0; pairs &= pairs - 1) {
+                const auto pair = static_cast<unsigned>(__builtin_ctzll(pairs));
+                const unsigned lane = pair % FanLeaf::kLanes;
+                drawn =
+                    test_group(seen, lane, pair / FanLeaf::kLanes, first * TriangleBlock::kLanes + lane) ||
+                    drawn;
+            }
+        if (!drawn) return;
+        end_ = farthest_end();
+        if constexpr (kAnyHit) hiding_.add(code);
     }
 
-    // Groups of which some ray may hit the triangle.
-    HWY_INLINE unsigned groups_meeting(const FanLeaf& seen, unsigned lane, bool certain) const
+    // Bit group * kLanes + lane: some ray of the group may hit that triangle.
+    HWY_INLINE std::uint64_t pairs_meeting(const FanLeaf& seen, unsigned certain) const
+    {
+        static_assert(FanLeaf::kLanes * RayFan::kGroups == 64);
+        const Eight d;
+        using V = hn::Vec<Eight>;
+        constexpr unsigned kAtOnce = hn::MaxLanes(d);
+        std::uint64_t pairs = 0;
+        for (unsigned i = 0; i < FanLeaf::kLanes; i += kAtOnce) {
+            if ((certain >> i & ((1u << kAtOnce) - 1)) == 0) continue;
+            const auto load = [&](const float* of) HWY_ATTR { return hn::Load(d, of + i); };
+            const V nearest = load(seen.nearest), farthest = load(seen.farthest);
+            const V least_x = load(seen.least_x), most_x = load(seen.most_x);
+            const V least_y = load(seen.least_y), most_y = load(seen.most_y);
+            const V error = hn::Neg(load(seen.edge_error)), zero = hn::Zero(d);
+            // An edge function is largest in one corner of a group's bounds.
+            V up[3][2], down[3][2], at[3];
+            for (std::size_t k = 0; k < 3; ++k) {
+                for (std::size_t axis = 0; axis < 2; ++axis) {
+                    const V e = load(seen.edge[k][axis]);
+                    up[k][axis] = hn::Max(e, zero);
+                    down[k][axis] = hn::Min(e, zero);
+                }
+                at[k] = load(seen.edge[k][2]);
+            }
+            for (unsigned g = 0; g < RayFan::kGroups; ++g) {
+                const V low_x = hn::Set(d, fan_.least_x[g]), high_x = hn::Set(d, fan_.most_x[g]);
+                const V low_y = hn::Set(d, fan_.least_y[g]), high_y = hn::Set(d, fan_.most_y[g]);
+                auto out = hn::Or(hn::Lt(hn::Set(d, fan_.group_end[g]), nearest),
+                                  hn::Lt(farthest, hn::Set(d, fan_.group_begin[g])));
+                out = hn::Or(out, hn::Or(hn::Lt(high_x, least_x), hn::Lt(most_x, low_x)));
+                out = hn::Or(out, hn::Or(hn::Lt(high_y, least_y), hn::Lt(most_y, low_y)));
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const V most = hn::MulAdd(
+                        up[k][0],
+                        high_x,
+                        hn::MulAdd(down[k][0],
+                                   low_x,
+                                   hn::MulAdd(up[k][1], high_y, hn::MulAdd(down[k][1], low_y, at[k]))));
+                    out = hn::Or(out, hn::Lt(most, error));
+                }
+                pairs |= std::uint64_t{~bits_of(d, out) & ((1u << kAtOnce) - 1)} << (g * FanLeaf::kLanes + i);
+            }
+        }
+        return pairs & certain * std::uint64_t{0x0101010101010101};
+    }
+
+    // Groups that come near the triangle, whichever side of it they see.
+    HWY_INLINE unsigned groups_near(const FanLeaf& seen, unsigned lane) const
     {
         const Group f;
         unsigned groups = 0;
-        // An edge function is largest in one corner of a group's bounds.
-        const float* corner_x[3];
-        const float* corner_y[3];
-        for (std::size_t k = 0; k < 3; ++k) {
-            corner_x[k] = seen.edge[k][0][lane] < 0 ? fan_.least_x : fan_.most_x;
-            corner_y[k] = seen.edge[k][1][lane] < 0 ? fan_.least_y : fan_.most_y;
-        }
-        const auto beyond = hn::Set(f, seen.nearest[lane]), behind = hn::Set(f, seen.farthest[lane]);
-        const auto error = hn::Set(f, -seen.edge_error[lane]);
         for (unsigned i = 0; i < RayFan::kGroups; i += kGroupLanes) {
-            auto out = hn::Or(hn::Lt(hn::Load(f, fan_.group_end + i), beyond),
-                              hn::Lt(behind, hn::Load(f, fan_.group_begin + i)));
             const auto apart = [&](const float* least, const float* most, float from, float to) HWY_ATTR {
                 return hn::Or(hn::Lt(hn::Load(f, most + i), hn::Set(f, from)),
                               hn::Lt(hn::Set(f, to), hn::Load(f, least + i)));
             };
+            auto out = apart(fan_.group_begin, fan_.group_end, seen.nearest[lane], seen.farthest[lane]);
             out = hn::Or(out, apart(fan_.least_x, fan_.most_x, seen.least_x[lane], seen.most_x[lane]));
             out = hn::Or(out, apart(fan_.least_y, fan_.most_y, seen.least_y[lane], seen.most_y[lane]));
-            if (certain)
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const auto most = hn::MulAdd(hn::Set(f, seen.edge[k][0][lane]),
-                                                 hn::Load(f, corner_x[k] + i),
-                                                 hn::MulAdd(hn::Set(f, seen.edge[k][1][lane]),
-                                                            hn::Load(f, corner_y[k] + i),
-                                                            hn::Set(f, seen.edge[k][2][lane])));
-                    out = hn::Or(out, hn::Lt(most, error));
-                }
             groups |= (~bits_of(f, out) & ((1u << kGroupLanes) - 1)) << i;
         }
         return groups;
@@ -370,6 +429,8 @@ private:
     FanFindings<kAnyHit> found_;
     float end_ = 0;
     unsigned leaves_ = 0;
+    bool left_few_ = false;
+    Occluders hiding_;
 };
 
 } // namespace

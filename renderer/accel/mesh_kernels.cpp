@@ -28,6 +28,7 @@
 #include "renderer/accel/follow_apart-inl.h"
 #include "renderer/accel/follow_fan-inl.h"
 #include "renderer/accel/follow_together-inl.h"
+#include "renderer/accel/shadow_fans-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -104,34 +105,40 @@ std::uint64_t trace_alike(const MeshView& mesh, const Ray* rays, unsigned count,
     return found(hits, count);
 }
 
+// False: no fan, and nothing is told.
+bool trace_camera_fan(
+    const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fan)
+{
+    RayFan fan;
+    if (!prepare_fan(fan, mesh, rays, count, false)) return false;
+    FanWalk<false> walk(mesh, fan, rays, hits);
+    found_in_fan = walk.walk();
+    // Rays that meet next to nothing in any case say nothing of the nearest hit's cost.
+    if (mesh.fans != nullptr && walk.met_many()) mesh.fans->nearest.tell(!walk.gave_up());
+    // Rays that stand far apart among small triangles.
+    if (walk.gave_up()) found_in_fan = trace_lone<false>(mesh, rays, count, hits);
+    return true;
+}
+
+bool trace_shadow_fans(
+    const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fans)
+{
+    ShadowFans fans(mesh, rays, count, hits);
+    if (!fans.follow()) return false;
+    if (const std::span<const Ray> left = fans.left(); !left.empty())
+        fans.found_of_left(trace_lone<true>(mesh, left.data(), static_cast<unsigned>(left.size()), hits));
+    found_in_fans = fans.found();
+    return true;
+}
+
 template <bool kAnyHit>
 bool trace_fan(
     const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fan)
 {
-    RayFan fan;
-    if (!prepare_fan(fan, mesh, rays, count, kAnyHit)) return false;
-    FanWalk<kAnyHit> fan_walk(mesh, fan, rays, hits);
-    found_in_fan = fan_walk.walk();
-    // Rays that meet next to nothing in any case say nothing of the nearest hit's cost.
-    if (mesh.fans != nullptr && (kAnyHit || fan_walk.met_many()))
-        mesh.fans->of(kAnyHit).tell(!fan_walk.gave_up());
-    if (!fan_walk.gave_up()) return true;
-    if (!kAnyHit) { // rays that stand far apart among small triangles
-        found_in_fan = trace_lone<kAnyHit>(mesh, rays, count, hits);
-        return true;
-    }
-    Uninitialized<Ray, RayFan::kRays> left;
-    unsigned from[RayFan::kRays];
-    unsigned waiting = 0;
-    for (unsigned i = 0; i < count; ++i) {
-        if ((found_in_fan >> i & 1) != 0) continue;
-        left[waiting] = rays[i];
-        from[waiting++] = i;
-    }
-    if (waiting == 0) return true; // all had hit by then
-    for (std::uint64_t met = trace_lone<kAnyHit>(mesh, left.data(), waiting, hits); met != 0; met &= met - 1)
-        found_in_fan |= std::uint64_t{1} << from[__builtin_ctzll(met)];
-    return true;
+    if constexpr (kAnyHit)
+        return trace_shadow_fans(mesh, rays, count, hits, found_in_fan);
+    else
+        return trace_camera_fan(mesh, rays, count, hits, found_in_fan);
 }
 
 // Run by run; runs that do not run alike wait for their neighbours, so that more are in flight at once.

@@ -34,6 +34,12 @@ inline constexpr unsigned kLeavesOfCameraFan = 256;
 inline constexpr std::size_t kMostBlocks =
     std::size_t{std::numeric_limits<std::int32_t>::max()} / (sizeof(TriangleBlock) / sizeof(float));
 
+// Of a direction, from the sizes of its components.
+HWY_INLINE std::size_t main_axis(const Vec3d& size)
+{
+    return size.x > size.y ? (size.x > size.z ? 0u : 2u) : (size.y > size.z ? 1u : 2u);
+}
+
 class FanMaker {
 public:
     HWY_INLINE FanMaker(RayFan& fan, const MeshView& mesh, const Ray* rays, unsigned count)
@@ -74,7 +80,7 @@ private:
     HWY_INLINE void name_axes(bool outward)
     {
         const Vec3d along = rays_[0].direction, size = abs(along);
-        fan_.z = size.x > size.y ? (size.x > size.z ? 0u : 2u) : (size.y > size.z ? 1u : 2u);
+        fan_.z = main_axis(size);
         fan_.x = fan_.z == 2 ? 0 : fan_.z + 1;
         fan_.y = fan_.x == 2 ? 0 : fan_.x + 1;
         fan_.turned = (along[fan_.z] < 0) == outward;
@@ -178,35 +184,59 @@ private:
         return true;
     }
 
-    HWY_INLINE void bound_groups()
+    struct Lesser {
+        HWY_INLINE hn::Vec<Group> operator()(hn::Vec<Group> a, hn::Vec<Group> b) const
+        {
+            return hn::Min(a, b);
+        }
+        HWY_INLINE float of_lanes(hn::Vec<Group> v) const { return hn::GetLane(hn::MinOfLanes(Group(), v)); }
+    };
+    struct Greater {
+        HWY_INLINE hn::Vec<Group> operator()(hn::Vec<Group> a, hn::Vec<Group> b) const
+        {
+            return hn::Max(a, b);
+        }
+        HWY_INLINE float of_lanes(hn::Vec<Group> v) const { return hn::GetLane(hn::MaxOfLanes(Group(), v)); }
+    };
+
+    // Of each group's values the best, and of all of them.
+    template <class Better>
+    static HWY_INLINE float find_best(const float* values, float* of_groups, Better better)
     {
         const Group f;
-        for (unsigned g = 0; g < RayFan::kGroups; ++g) {
-            const unsigned first = (g < fan_.groups() ? g : 0) * RayFan::kGroup;
-            const auto least = [&](const float* values) HWY_ATTR {
-                auto v = hn::Load(f, values + first);
-                for (unsigned i = kGroupLanes; i < RayFan::kGroup; i += kGroupLanes)
-                    v = hn::Min(v, hn::Load(f, values + first + i));
-                return hn::GetLane(hn::MinOfLanes(f, v));
-            };
-            const auto most = [&](const float* values) HWY_ATTR {
-                auto v = hn::Load(f, values + first);
-                for (unsigned i = kGroupLanes; i < RayFan::kGroup; i += kGroupLanes)
-                    v = hn::Max(v, hn::Load(f, values + first + i));
-                return hn::GetLane(hn::MaxOfLanes(f, v));
-            };
-            fan_.least_x[g] = least(fan_.slope_x);
-            fan_.most_x[g] = most(fan_.slope_x);
-            fan_.least_y[g] = least(fan_.slope_y);
-            fan_.most_y[g] = most(fan_.slope_y);
-            fan_.group_begin[g] = least(fan_.begin);
-            fan_.group_end[g] = g < fan_.groups() ? most(fan_.end) : -std::numeric_limits<float>::infinity();
+        alignas(64) float of_halves[2 * RayFan::kGroups];
+        static_assert(RayFan::kGroup == 2 * 4);
+        for (unsigned i = 0; i < RayFan::kRays; i += 4 * kGroupLanes) {
+            hn::Vec<Group> v[4];
+            hn::LoadInterleaved4(f, values + i, v[0], v[1], v[2], v[3]);
+            hn::Store(better(better(v[0], v[1]), better(v[2], v[3])), f, of_halves + i / 4);
         }
-        fan_.all_least_x = *std::min_element(fan_.least_x, fan_.least_x + RayFan::kGroups);
-        fan_.all_most_x = *std::max_element(fan_.most_x, fan_.most_x + RayFan::kGroups);
-        fan_.all_least_y = *std::min_element(fan_.least_y, fan_.least_y + RayFan::kGroups);
-        fan_.all_most_y = *std::max_element(fan_.most_y, fan_.most_y + RayFan::kGroups);
-        fan_.all_begin = *std::min_element(fan_.group_begin, fan_.group_begin + RayFan::kGroups);
+        hn::Vec<Group> best;
+        for (unsigned g = 0; g < RayFan::kGroups; g += kGroupLanes) {
+            hn::Vec<Group> first, second;
+            hn::LoadInterleaved2(f, of_halves + std::size_t{2} * g, first, second);
+            const auto of_group = better(first, second);
+            hn::Store(of_group, f, of_groups + g);
+            best = g == 0 ? of_group : better(best, of_group);
+        }
+        return better.of_lanes(best);
+    }
+
+    HWY_INLINE void bound_groups()
+    {
+        // Groups that are not there are as the first one, and have ended.
+        for (unsigned i = fan_.groups() * RayFan::kGroup; i < RayFan::kRays; ++i) {
+            fan_.slope_x[i] = fan_.slope_x[0];
+            fan_.slope_y[i] = fan_.slope_y[0];
+            fan_.begin[i] = fan_.begin[0];
+            fan_.end[i] = -std::numeric_limits<float>::infinity();
+        }
+        fan_.all_least_x = find_best(fan_.slope_x, fan_.least_x, Lesser());
+        fan_.all_most_x = find_best(fan_.slope_x, fan_.most_x, Greater());
+        fan_.all_least_y = find_best(fan_.slope_y, fan_.least_y, Lesser());
+        fan_.all_most_y = find_best(fan_.slope_y, fan_.most_y, Greater());
+        fan_.all_begin = find_best(fan_.begin, fan_.group_begin, Lesser());
+        find_best(fan_.end, fan_.group_end, Greater());
     }
 
     RayFan& fan_;

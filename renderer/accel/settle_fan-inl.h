@@ -55,6 +55,12 @@ public:
         return drawn;
     }
 
+    // Rays that have not hit as far as is known.
+    HWY_INLINE unsigned missing() const
+    {
+        return static_cast<unsigned>(std::popcount(rays_there() & ~found_));
+    }
+
     HWY_INLINE void bound_group(unsigned group)
     {
         const Group f;
@@ -342,7 +348,7 @@ private:
     MeshHit* best_;
     std::uint64_t found_ = 0, preferring_ = 0;
     unsigned count_ = 0;
-    alignas(64) std::uint32_t preferred_[RayFan::kRays] = {};
+    alignas(64) std::uint32_t preferred_[kAnyHit ? 1 : RayFan::kRays] = {}; // of the nearest hits
     Asked asked_[kMostAsked];
 };
 

@@ -202,6 +202,62 @@ TEST_P(EveryMeshKernel, FollowsFansToALightAsBruteForceWould)
     EXPECT_GT(hits_, rays_ / 5);
 }
 
+// Rays to a light from a few places in turn, so that neighbours have little in common: from one side of the light or
+// from several.
+std::vector<Ray> scattered_light_fan(Random& random, const Mesh& mesh, const Vec3d& light)
+{
+    const unsigned places = 2 + random.below(5);
+    Vec3d place[6];
+    for (unsigned i = 0; i < places; ++i)
+        place[i] = random.below(2) == 0 ? about(random, mesh, 2) : place_on(random, mesh);
+    const double width = std::pow(10, random.uniform(-4, -1));
+    std::vector<Ray> rays(random.below(4) == 0 ? 8 + random.below(kRun - 8) : kRun);
+    for (Ray& ray : rays) {
+        const Vec3d& at = place[random.below(places)];
+        const Vec3d from = at + random.direction() * (width * length(at - light));
+        ray = {from, light - from, 0, 1 - 0x1p-20};
+    }
+    return rays;
+}
+
+TEST_P(EveryMeshKernel, FollowsRaysToALightFromSeveralPlaces)
+{
+    Random random(42);
+    for (const Mesh& mesh : ten_meshes()) {
+        const MeshBvh bvh = build(mesh);
+        for (int i = 0; i < 60 / kThinning; ++i)
+            expect_as_brute_force(bvh, scattered_light_fan(random, mesh, about(random, mesh, 2)));
+    }
+    EXPECT_GT(hits_, rays_ / 5);
+}
+
+// What hid the light from the last fan is asked first, and may hide it from the next one, from a part of it or not at
+// all; or it was of a mesh that is gone, and another one is in its place.
+TEST_P(EveryMeshKernel, FollowsFansToALightThatWasHidden)
+{
+    Random random(43);
+    std::optional<MeshBvh> bvh;
+    for (const std::uint32_t cells : {30u, 3u, 12u, 1u}) {
+        const Mesh wall = grid(cells, 10);
+        bvh.reset();
+        bvh = build(wall);
+        const Vec3d low = to_double(bvh->bounds().lower), high = to_double(bvh->bounds().upper);
+        const double across = length(high - low);
+        const Vec3d middle = (low + high) * 0.5, light = middle + Vec3d{0, across, 0};
+        for (int i = 0; i < 20; ++i) {
+            const Vec3d below = middle + Vec3d{across * 0.07 * i, -0.3 * across, 0};
+            std::vector<Ray> rays(kRun);
+            for (Ray& ray : rays) {
+                const Vec3d from = below + random.direction() * (0.05 * across);
+                ray = {from, light - from, 0, 1 - 0x1p-20};
+            }
+            expect_as_brute_force(*bvh, rays);
+        }
+    }
+    EXPECT_GT(hits_, rays_ / 5);
+    EXPECT_LT(hits_, rays_ - rays_ / 10);
+}
+
 // Along most rays two axes are as much as each other, and which of them a ray counts as running along may not depend on
 // the first of the fan, along which one is a little more.
 TEST_P(EveryMeshKernel, FollowsFansAlongTheDiagonalsOfAxes)
