@@ -106,7 +106,12 @@ std::uint64_t trace_alike(const MeshView& mesh, const Ray* rays, unsigned count,
 }
 
 // False: no fan, and nothing is told.
-bool trace_camera_fan(
+template <bool kAnyHit>
+bool trace_fan(
+    const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fan);
+
+template <>
+bool trace_fan<false>(
     const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fan)
 {
     RayFan fan;
@@ -120,25 +125,16 @@ bool trace_camera_fan(
     return true;
 }
 
-bool trace_shadow_fans(
-    const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fans)
+template <>
+bool trace_fan<true>(
+    const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fan)
 {
     ShadowFans fans(mesh, rays, count, hits);
     if (!fans.follow()) return false;
     if (const std::span<const Ray> left = fans.left(); !left.empty())
         fans.found_of_left(trace_lone<true>(mesh, left.data(), static_cast<unsigned>(left.size()), hits));
-    found_in_fans = fans.found();
+    found_in_fan = fans.found();
     return true;
-}
-
-template <bool kAnyHit>
-bool trace_fan(
-    const MeshView& mesh, const Ray* rays, unsigned count, MeshHit* hits, std::uint64_t& found_in_fan)
-{
-    if constexpr (kAnyHit)
-        return trace_shadow_fans(mesh, rays, count, hits, found_in_fan);
-    else
-        return trace_camera_fan(mesh, rays, count, hits, found_in_fan);
 }
 
 // Run by run; runs that do not run alike wait for their neighbours, so that more are in flight at once.

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <malloc.h>
 #include <stdexcept>
 #include <sys/wait.h>
 #include <system_error>
@@ -34,6 +35,7 @@ std::vector<double> in_fresh_process(const std::function<std::vector<double>()>&
     int ends[2];
     if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
     std::fflush(nullptr);
+    malloc_trim(0); // what has been freed comes to the child as new memory, not as the parent's to be copied
     const pid_t child = fork();
     if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (child == 0) {
