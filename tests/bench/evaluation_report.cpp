@@ -35,10 +35,9 @@ json acceleration_json(const AccelerationSettings& a)
     const auto word = [](auto value) {
         return api::name_of(api::words_for<decltype(value)>(), static_cast<int>(value));
     };
-    return {{"bvh", {{"split", word(a.split.value())}, {"width", word(a.width)}, {"levels", word(a.levels)}}},
-            {"bounds", a.bounds},
-            {"threads", a.threads},
-            {"tile", a.tile_px}};
+    json bvh{{"width", word(a.width)}, {"levels", word(a.levels)}};
+    if (a.split) bvh["split"] = word(*a.split); // as in a scene: without it, as pays
+    return {{"bvh", bvh}, {"bounds", a.bounds}, {"threads", a.threads}, {"tile", a.tile_px}};
 }
 
 double percent_less(double before, double after)
