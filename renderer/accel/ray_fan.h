@@ -5,7 +5,7 @@
 //          direction of the rays; depths count from the apex along z. A ray is its two slopes and the depths between
 //          which it runs, in float; rays that end at the apex are looked at from their end.
 // Promise  whatever the double test can hit is within what the float numbers say, taken with `aside` and the
-//          roundings that follow_fan-inl.h names.
+//          roundings that fan_leaf-inl.h and fan_sides-inl.h name.
 #pragma once
 
 #include "renderer/accel/wide_bvh.h"
