@@ -9,6 +9,7 @@
 #include "renderer/accel/kernel_lanes-inl.h"
 #include "renderer/accel/mesh_kernels.h"
 #include "renderer/accel/ray_fan.h"
+#include "renderer/math/uninitialized.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,8 @@ public:
         apex_ = outward ? first.origin : first.origin + first.direction * first.t_max;
         if (!apex_is_near() || (!outward && !ends_near_apex(rays_[1]))) return false;
         name_axes(outward);
-        load();
+        for (std::size_t k = 0; k < 3; ++k)
+            shift_[k] = apex_[k];
         return outward ? finish<true>() : finish<false>();
     }
 
@@ -95,57 +97,116 @@ private:
         fan_.size = std::max(max_abs(mesh_.bounds.lower), max_abs(mesh_.bounds.upper));
     }
 
-    // Origins from the apex, directions, t_min and t_max, rounded to float.
-    HWY_INLINE void load()
+    using V = hn::Vec<Group>;
+
+    // As many rays as a vector has lanes: origins from the apex, directions, t_min and t_max, rounded to float.
+    struct FloatRays {
+        V from[3], along[3], t_min, t_max;
+    };
+
+    HWY_INLINE FloatRays read(unsigned first) const
     {
-        const hn::CappedTag<double, 4> d;
-        const hn::Rebind<float, decltype(d)> f;
-        static_assert(sizeof(Ray) == 8 * sizeof(double));
-        alignas(32) const double apex[4] = {apex_.x, apex_.y, apex_.z, 0};
-        const unsigned lanes = fan_.groups() * RayFan::kGroup;
-        for (unsigned i = 0; i < lanes; ++i) {
-            const Ray& given = rays_[std::min(i, count_ - 1)];
-            const double* const ray = &given.origin.x;
-            for (std::size_t k = 0; k < 4; k += hn::MaxLanes(d)) {
-                hn::Store(hn::DemoteTo(f, hn::Sub(hn::LoadU(d, ray + k), hn::Load(d, apex + k))),
-                          f,
-                          first_half_[i] + k);
-                hn::Store(hn::DemoteTo(f, hn::LoadU(d, ray + 4 + k)), f, second_half_[i] + k);
-            }
-        }
+        if (first + kGroupLanes <= count_) return narrow(rays_ + first);
+        Uninitialized<Ray, kGroupLanes> filled_up;
+        for (unsigned i = 0; i < kGroupLanes; ++i)
+            filled_up[i] = rays_[std::min(first + i, count_ - 1)];
+        return narrow(filled_up.data());
     }
+
+#if HWY_TARGET == HWY_SCALAR
+    HWY_INLINE FloatRays narrow(const Ray* ray) const
+    {
+        const Group f;
+        const auto set = [&](double value) { return hn::Set(f, static_cast<float>(value)); };
+        const Vec3d from = ray->origin - apex_, along = ray->direction;
+        return {{set(from.x), set(from.y), set(from.z)},
+                {set(along.x), set(along.y), set(along.z)},
+                set(ray->t_min),
+                set(ray->t_max)};
+    }
+#else
+    HWY_INLINE FloatRays narrow(const Ray* rays) const
+    {
+        static_assert(sizeof(Ray) == 8 * sizeof(double));
+        FloatRays out;
+        narrow_half<true>(rays, out.from[0], out.from[1], out.from[2], out.along[0]);
+        narrow_half<false>(rays, out.along[1], out.along[2], out.t_min, out.t_max);
+        return out;
+    }
+
+    // Four members of each ray, as vectors of one member each.
+    template <bool kOrigins>
+    HWY_INLINE void narrow_half(const Ray* rays, V& a, V& b, V& c, V& d) const
+    {
+        const Group f;
+        const hn::RepartitionToWide<Group> pair;
+        V some[kQuad];
+        for (unsigned i = 0; i < kQuad; ++i) {
+            if constexpr (kGroupLanes == 2 * kQuad)
+                some[i] = hn::Combine(f, four<kOrigins>(rays[i + kQuad]), four<kOrigins>(rays[i]));
+            else
+                some[i] = four<kOrigins>(rays[i]);
+        }
+        const auto lower = [&](V p, V q) HWY_ATTR { return hn::BitCast(pair, hn::InterleaveLower(f, p, q)); };
+        const auto upper = [&](V p, V q) HWY_ATTR { return hn::BitCast(pair, hn::InterleaveUpper(f, p, q)); };
+        const auto ab = lower(some[0], some[1]), ab_next = lower(some[2], some[3]);
+        const auto cd = upper(some[0], some[1]), cd_next = upper(some[2], some[3]);
+        a = hn::BitCast(f, hn::InterleaveLower(pair, ab, ab_next));
+        b = hn::BitCast(f, hn::InterleaveUpper(pair, ab, ab_next));
+        c = hn::BitCast(f, hn::InterleaveLower(pair, cd, cd_next));
+        d = hn::BitCast(f, hn::InterleaveUpper(pair, cd, cd_next));
+    }
+
+    static constexpr unsigned kQuad = 4;
+    using Quad = hn::CappedTag<float, kQuad>;
+
+    template <bool kOrigins>
+    HWY_INLINE hn::Vec<Quad> four(const Ray& ray) const
+    {
+        const Quad f;
+        const hn::CappedTag<double, kQuad> d;
+        const double* const members = kOrigins ? &ray.origin.x : &ray.direction.y;
+        const auto part = [&](std::size_t k) HWY_ATTR {
+            const auto given = hn::LoadU(d, members + k);
+            return hn::DemoteTo(hn::Rebind<float, decltype(d)>(),
+                                kOrigins ? hn::Sub(given, hn::Load(d, shift_ + k)) : given);
+        };
+        if constexpr (hn::MaxLanes(d) == kQuad)
+            return part(0);
+        else
+            return hn::Combine(f, part(2), part(0));
+    }
+#endif
 
     template <bool kOutward>
     HWY_INLINE bool finish()
     {
         const Group f;
-        using V = hn::Vec<Group>;
         const auto zero = hn::Zero(f), relative = hn::Set(f, 0x1p-21f),
                    infinity = hn::Set(f, std::numeric_limits<float>::infinity());
         const auto sign = hn::Set(f, fan_.turned ? -1.0f : 1.0f);
         auto sound = hn::Eq(zero, zero);
         auto aside = zero, reach = zero;
         for (unsigned i = 0; i < fan_.groups() * RayFan::kGroup; i += kGroupLanes) {
-            V from[3], along[3], t_min, t_max;
-            hn::LoadInterleaved4(f, first_half_[i], from[0], from[1], from[2], along[0]);
-            hn::LoadInterleaved4(f, second_half_[i], along[1], along[2], t_min, t_max);
-            const V dz = along[fan_.z], speed = hn::Abs(dz);
-            const V sx = hn::Div(along[fan_.x], dz), sy = hn::Div(along[fan_.y], dz);
+            const auto [from, along, t_min, t_max] = read(i);
+            const V dz = along[fan_.z], inverse = hn::Div(hn::Set(f, 1.0f), dz);
+            const V sx = hn::Mul(along[fan_.x], inverse), sy = hn::Mul(along[fan_.y], inverse);
+            const V ahead = hn::Mul(kOutward ? dz : hn::Neg(dz), sign);
             // With a NaN anywhere something is not true.
             const auto steepest = hn::Set(f, kSteepest);
             sound = hn::And(sound, hn::And(hn::Le(hn::Abs(sx), steepest), hn::Le(hn::Abs(sy), steepest)));
             sound = hn::And(sound, hn::And(hn::Le(zero, t_min), hn::Lt(t_min, t_max)));
             sound = hn::And(sound, hn::Lt(hn::Set(f, 0x1p-100f), t_max)); // and all its digits are there
             sound = hn::And(sound,
-                            hn::And(hn::Lt(hn::Set(f, 0x1p-60f), speed), hn::Lt(speed, hn::Set(f, 0x1p60f))));
-            sound = hn::And(sound, hn::Lt(zero, hn::Mul(kOutward ? dz : hn::Neg(dz), sign)));
-            V begin = hn::Mul(t_min, speed), end = hn::Mul(t_max, speed), blur = zero;
+                            hn::And(hn::Lt(hn::Set(f, 0x1p-60f), ahead), hn::Lt(ahead, hn::Set(f, 0x1p60f))));
+            V begin = hn::Mul(t_min, ahead), end = hn::Mul(t_max, ahead), blur = zero;
             if constexpr (kOutward) {
                 for (const V& component : from)
                     sound = hn::And(sound, hn::Eq(component, zero));
             } else {
                 const V depth = hn::Mul(from[fan_.z], sign);
-                const V size = hn::Max(hn::Abs(from[0]), hn::Max(hn::Abs(from[1]), hn::Abs(from[2])));
+                const V across_x = hn::Abs(from[fan_.x]), across_y = hn::Abs(from[fan_.y]);
+                const V size = hn::Max(depth, hn::Max(across_x, across_y));
                 const V first = hn::Sub(depth, end);
                 end = hn::Sub(depth, begin);
                 begin = first;
@@ -154,20 +215,21 @@ private:
                                        hn::Abs(hn::NegMulAdd(sy, from[fan_.z], from[fan_.y])));
                 aside = hn::Max(aside, hn::Add(hn::Max(side, hn::Neg(begin)), hn::Add(blur, blur)));
                 reach = hn::Max(reach, size);
-                for (const V& component : from)
-                    sound = hn::And(sound, hn::Lt(hn::Abs(component), infinity));
                 sound = hn::And(sound, hn::Lt(zero, depth));
+                sound = hn::And(sound, hn::Lt(hn::Add(depth, hn::Add(across_x, across_y)), infinity));
             }
             hn::Store(hn::Mul(sx, sign), f, fan_.slope_x + i);
             hn::Store(hn::Mul(sy, sign), f, fan_.slope_y + i);
             blur = hn::Add(blur, hn::Set(f, 0x1p-80f)); // a t_min too small for float
-            const auto slack = [&](V at) HWY_ATTR { return hn::Add(hn::Mul(hn::Abs(at), relative), blur); };
-            hn::Store(hn::Max(hn::Sub(begin, slack(begin)), zero), f, fan_.begin + i);
-            hn::Store(hn::Add(begin, slack(begin)), f, fan_.after + i);
-            hn::Store(hn::Add(end, slack(end)), f, fan_.end + i);
-            // Of an end at infinity there is no slack.
-            hn::Store(
-                hn::IfThenElse(hn::Eq(end, infinity), end, hn::Sub(end, slack(end))), f, fan_.before + i);
+            const auto slack = [&](V at) HWY_ATTR { return hn::MulAdd(hn::Abs(at), relative, blur); };
+            const V slack_of_begin = slack(begin), slack_of_end = slack(end);
+            hn::Store(hn::Max(hn::Sub(begin, slack_of_begin), zero), f, fan_.begin + i);
+            hn::Store(hn::Add(begin, slack_of_begin), f, fan_.after + i);
+            hn::Store(hn::Add(end, slack_of_end), f, fan_.end + i);
+            V before = hn::Sub(end, slack_of_end);
+            if constexpr (kOutward) // of an end at infinity there is no slack
+                before = hn::IfThenElse(hn::Eq(end, infinity), end, before);
+            hn::Store(before, f, fan_.before + i);
         }
         if (!hn::AllTrue(f, sound)) return false;
         fan_.aside = hn::GetLane(hn::MaxOfLanes(f, aside));
@@ -185,18 +247,12 @@ private:
     }
 
     struct Lesser {
-        HWY_INLINE hn::Vec<Group> operator()(hn::Vec<Group> a, hn::Vec<Group> b) const
-        {
-            return hn::Min(a, b);
-        }
-        HWY_INLINE float of_lanes(hn::Vec<Group> v) const { return hn::GetLane(hn::MinOfLanes(Group(), v)); }
+        HWY_INLINE V operator()(V a, V b) const { return hn::Min(a, b); }
+        HWY_INLINE float of_lanes(V v) const { return hn::GetLane(hn::MinOfLanes(Group(), v)); }
     };
     struct Greater {
-        HWY_INLINE hn::Vec<Group> operator()(hn::Vec<Group> a, hn::Vec<Group> b) const
-        {
-            return hn::Max(a, b);
-        }
-        HWY_INLINE float of_lanes(hn::Vec<Group> v) const { return hn::GetLane(hn::MaxOfLanes(Group(), v)); }
+        HWY_INLINE V operator()(V a, V b) const { return hn::Max(a, b); }
+        HWY_INLINE float of_lanes(V v) const { return hn::GetLane(hn::MaxOfLanes(Group(), v)); }
     };
 
     // Of each group's values the best, and of all of them.
@@ -207,13 +263,13 @@ private:
         alignas(64) float of_halves[2 * RayFan::kGroups];
         static_assert(RayFan::kGroup == 2 * 4);
         for (unsigned i = 0; i < RayFan::kRays; i += 4 * kGroupLanes) {
-            hn::Vec<Group> v[4];
+            V v[4];
             hn::LoadInterleaved4(f, values + i, v[0], v[1], v[2], v[3]);
             hn::Store(better(better(v[0], v[1]), better(v[2], v[3])), f, of_halves + i / 4);
         }
-        hn::Vec<Group> best;
+        V best;
         for (unsigned g = 0; g < RayFan::kGroups; g += kGroupLanes) {
-            hn::Vec<Group> first, second;
+            V first, second;
             hn::LoadInterleaved2(f, of_halves + std::size_t{2} * g, first, second);
             const auto of_group = better(first, second);
             hn::Store(of_group, f, of_groups + g);
@@ -245,7 +301,7 @@ private:
     unsigned count_;
     bool any_hit_ = false;
     Vec3d apex_;
-    alignas(64) float first_half_[RayFan::kRays][4], second_half_[RayFan::kRays][4];
+    alignas(32) double shift_[4] = {}; // of a ray's first four members
 };
 
 // Fewer rays than kFewestOfFan are not worth it.
