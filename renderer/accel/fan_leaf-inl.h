@@ -8,6 +8,9 @@
 
 #include "renderer/accel/prepare_fan-inl.h"
 
+#include <limits>
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace renderer::HWY_NAMESPACE {
 namespace {
@@ -85,13 +88,13 @@ private:
     // longest edge, w at most kSteepest. Corners from the apex have 2, the apex being two floats, and 2^-45 of the
     // coordinates' size, which `blur` takes in; edges from corner to corner 1. A product of both, subtracted from
     // another, has 5, of edges 4; so an edge function has w * 5 * 6 A L at most, a determinant w * 4 * 6 L^2, a
-    // volume 4 * 6 L^2 A and 5 of |whole|_1 A. Evaluating one, the slopes (3 roundings), two products and sums make
+    // volume 4 * 6 L^2 A and 5 of |whole|_1 A. Evaluating one, the slopes (4 roundings), two products and sums make
     // less than 16 |n|_1, also where it is the corner of a group's bounds that is asked. The double test itself
     // computes in double from the rays' own origins, up to `reach` farther: 2^-47 (A + reach)^2 in an edge function.
     // Lines that pass `aside` from the apex shift edge functions by less than 4 * aside * |edge|_1. Corners that are more
     // than floats are off by up to 2^-24 of the coordinates' size: their own part is in `blur`, that of their edges is as
     // if those were longer by twice the size; in a product of two edges the square of that is left over. What is below
-    // float's range is less than 2^-110. Slopes of corners have five roundings, those of rays three.
+    // float's range is less than 2^-110. Slopes of corners have six roundings, those of rays four.
     HWY_INLINE void see_lanes(const TriangleBlock* blocks, unsigned count, unsigned lane, FanLeaf& out) const
     {
         const D d;
@@ -198,81 +201,111 @@ private:
                             unsigned lane,
                             FanLeaf& out) const
     {
-        const hn::CappedTag<double, kSeenAtOnce> d;
-        const hn::Rebind<float, decltype(d)> f;
-        using W = hn::Vec<decltype(d)>;
-        constexpr unsigned kLanes = hn::MaxLanes(d);
-        const D of_corners;
-        alignas(32) float at[3][3][kSeenAtOnce], farthest[kSeenAtOnce], flips[kSeenAtOnce],
-            longest_edges[kSeenAtOnce], roundings[kSeenAtOnce];
-        hn::Store(farthest_corner, of_corners, farthest);
-        hn::Store(longest_edge, of_corners, longest_edges);
-        hn::Store(rounding, of_corners, roundings);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::size_t k = 0; k < 3; ++k)
-                hn::Store(corners[k][axis], of_corners, at[k][axis]);
+        const auto flips_of = [&](auto part) HWY_ATTR {
+            return see_planes_of(part, corners, farthest_corner, longest_edge, rounding, lane, out);
+        };
+#if HWY_TARGET != HWY_SCALAR && HWY_MAX_BYTES < 64
+        return hn::Combine(D(), flips_of(SecondPart()), flips_of(FirstPart()));
+#else
+        return flips_of(FirstPart());
+#endif
+    }
+
+    // As many doubles as a vector takes: all triangles, or one half of them and then the other.
+    using Doubles = hn::CappedTag<double, kSeenAtOnce>;
+    using Floats = hn::Rebind<float, Doubles>;
+    static constexpr unsigned kPlanesAtOnce = hn::MaxLanes(Doubles());
+    using FirstPart = std::integral_constant<unsigned, 0>;
+    using SecondPart = std::integral_constant<unsigned, kPlanesAtOnce>;
+
+    static HWY_INLINE hn::Vec<Doubles> widen(FirstPart, hn::Vec<Floats> v)
+    {
+        return hn::PromoteTo(Doubles(), v);
+    }
+#if HWY_TARGET != HWY_SCALAR && HWY_MAX_BYTES < 64
+    static HWY_INLINE hn::Vec<Doubles> widen(FirstPart, V v)
+    {
+        return hn::PromoteTo(Doubles(), hn::LowerHalf(Floats(), v));
+    }
+    static HWY_INLINE hn::Vec<Doubles> widen(SecondPart, V v)
+    {
+        return hn::PromoteTo(Doubles(), hn::UpperHalf(Floats(), v));
+    }
+#endif
+
+    template <class Part>
+    HWY_INLINE hn::Vec<Floats> see_planes_of(Part part,
+                                             const V (&corners)[3][3],
+                                             V farthest_corner,
+                                             V longest_edge,
+                                             V rounding,
+                                             unsigned lane,
+                                             FanLeaf& out) const
+    {
+        const Doubles d;
+        const Floats f;
+        using W = hn::Vec<Doubles>;
         const auto set = [&](double value) HWY_ATTR { return hn::Set(d, value); };
         const auto sizes = [&](const W(&v)[3]) HWY_ATTR {
             return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
         };
-        for (unsigned i = 0; i < kSeenAtOnce; i += kLanes) {
-            W corner[3], along[2][3], whole[3];
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const W a = hn::PromoteTo(d, hn::Load(f, at[0][axis] + i)),
-                        b = hn::PromoteTo(d, hn::Load(f, at[1][axis] + i)),
-                        c = hn::PromoteTo(d, hn::Load(f, at[2][axis] + i));
-                corner[axis] = hn::Sub(a, set(axis == 2 ? fan_.apex.z * fan_.sign() : fan_.apex[axis]));
-                along[0][axis] = hn::Sub(b, a);
-                along[1][axis] = hn::Sub(c, b);
-            }
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const std::size_t j = axis == 2 ? 0 : axis + 1, k = j == 2 ? 0 : j + 1;
-                whole[axis] = hn::MulSub(along[0][j], along[1][k], hn::Mul(along[0][k], along[1][j]));
-            }
-            const W volume = hn::MulAdd(
-                whole[0], corner[0], hn::MulAdd(whole[1], corner[1], hn::Mul(whole[2], corner[2])));
-            const W flip = hn::CopySign(hn::Zero(d), volume), size = hn::Abs(volume),
-                    size_of_whole = sizes(whole);
-            const W longest = hn::PromoteTo(d, hn::Load(f, longest_edges + i));
-            const W reached = hn::Add(hn::PromoteTo(d, hn::Load(f, farthest + i)), set(fan_.reach));
-            const W rounding_of_corners = hn::PromoteTo(d, hn::Load(f, roundings + i));
-            const W error = hn::MulAdd(
-                size,
-                set(0x1p-22),
-                hn::MulAdd(size_of_whole,
-                           set(fan_.blur),
-                           hn::MulAdd(hn::Mul(rounding_of_corners, set(0x1.8p-20)),
-                                      reached,
-                                      hn::Mul(hn::Mul(longest, set(0x1p-40)), hn::Mul(reached, reached)))));
-            out.faces |= bits_of(d, hn::Gt(size, error)) << (lane + i);
-            const auto store = [&](W value, float* to)
-                                   HWY_ATTR { hn::Store(hn::DemoteTo(f, value), f, to + lane + i); };
-            hn::Store(hn::DemoteTo(f, flip), f, flips + i);
-            store(hn::Sub(size, error), out.least_volume);
-            store(hn::Add(size, error), out.most_volume);
-            store(hn::MulAdd(size_of_whole,
-                             set(0x1p-20),
-                             hn::MulAdd(rounding_of_corners,
-                                        set(0x1p-19),
-                                        hn::Mul(hn::Mul(longest, longest), set(0x1p-46)))),
-                  out.whole_error);
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                store(hn::Xor(whole[axis], flip), out.whole[axis]);
+        W corner[3], along[2][3], whole[3];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const W a = widen(part, corners[0][axis]), b = widen(part, corners[1][axis]),
+                    c = widen(part, corners[2][axis]);
+            corner[axis] = hn::Sub(a, set(axis == 2 ? fan_.apex.z * fan_.sign() : fan_.apex[axis]));
+            along[0][axis] = hn::Sub(b, a);
+            along[1][axis] = hn::Sub(c, b);
         }
-        return hn::Load(of_corners, flips);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t j = axis == 2 ? 0 : axis + 1, k = j == 2 ? 0 : j + 1;
+            whole[axis] = hn::MulSub(along[0][j], along[1][k], hn::Mul(along[0][k], along[1][j]));
+        }
+        const W volume =
+            hn::MulAdd(whole[0], corner[0], hn::MulAdd(whole[1], corner[1], hn::Mul(whole[2], corner[2])));
+        const W flip = hn::CopySign(hn::Zero(d), volume), size = hn::Abs(volume),
+                size_of_whole = sizes(whole);
+        const W longest = widen(part, longest_edge);
+        const W reached = hn::Add(widen(part, farthest_corner), set(fan_.reach));
+        const W rounding_of_corners = widen(part, rounding);
+        const W error = hn::MulAdd(
+            size,
+            set(0x1p-22),
+            hn::MulAdd(size_of_whole,
+                       set(fan_.blur),
+                       hn::MulAdd(hn::Mul(rounding_of_corners, set(0x1.8p-20)),
+                                  reached,
+                                  hn::Mul(hn::Mul(longest, set(0x1p-40)), hn::Mul(reached, reached)))));
+        out.faces |= bits_of(d, hn::Gt(size, error)) << (lane + part);
+        const auto store = [&](W value, float* to)
+                               HWY_ATTR { hn::Store(hn::DemoteTo(f, value), f, to + lane + part); };
+        store(hn::Sub(size, error), out.least_volume);
+        store(hn::Add(size, error), out.most_volume);
+        store(hn::MulAdd(size_of_whole,
+                         set(0x1p-20),
+                         hn::MulAdd(rounding_of_corners,
+                                    set(0x1p-19),
+                                    hn::Mul(hn::Mul(longest, longest), set(0x1p-46)))),
+              out.whole_error);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            store(hn::Xor(whole[axis], flip), out.whole[axis]);
+        return hn::DemoteTo(f, flip);
     }
 
     HWY_INLINE void bound_slopes(const V (&corner)[3][3], V depth_slack, unsigned lane, FanLeaf& out) const
     {
         const D d;
         const V nearest = hn::Min(hn::Min(corner[0][2], corner[1][2]), corner[2][2]);
+        V inverse[3];
+        for (std::size_t k = 0; k < 3; ++k)
+            inverse[k] = hn::Div(set(1), corner[k][2]);
         // Of what is not clearly beyond the apex: a blur without end.
         const V blur = hn::IfThenElse(hn::Lt(depth_slack, nearest),
-                                      hn::Div(set(fan_.blur), nearest),
+                                      hn::Mul(set(fan_.blur), max3(inverse[0], inverse[1], inverse[2])),
                                       set(std::numeric_limits<float>::infinity()));
         const auto bound = [&](std::size_t axis, float* least, float* most) HWY_ATTR {
-            const V a = hn::Div(corner[0][axis], corner[0][2]), b = hn::Div(corner[1][axis], corner[1][2]),
-                    c = hn::Div(corner[2][axis], corner[2][2]);
+            const V a = hn::Mul(corner[0][axis], inverse[0]), b = hn::Mul(corner[1][axis], inverse[1]),
+                    c = hn::Mul(corner[2][axis], inverse[2]);
             const V lower = hn::Min(a, hn::Min(b, c)), upper = max3(a, b, c);
             const V slack = hn::MulAdd(hn::Max(hn::Abs(lower), hn::Abs(upper)), set(0x1p-20f), blur);
             hn::Store(hn::Sub(lower, slack), d, least + lane);
