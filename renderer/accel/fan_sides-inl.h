@@ -68,8 +68,8 @@ public:
         }
     }
 
-    // Whether a group of rays may enter the child: closer bounds than those of all together.
-    HWY_INLINE bool some_group_enters(const WideNode& node, unsigned child) const
+    // Bit g: the rays of group g may enter the child. These are closer bounds than those of all together.
+    HWY_INLINE unsigned groups_entering(const WideNode& node, unsigned child) const
     {
         const Group f;
         const float near = std::max(node.planes[near_row_][child] * sign_ + depth_shift_, 0.0f);
@@ -93,9 +93,9 @@ public:
                                             node.planes[2 * fan_.y + 1][child] - apex_y_ + slack_);
             const auto in_depth = hn::And(hn::Le(hn::Set(f, near), hn::Load(f, fan_.group_end + g)),
                                           hn::Le(hn::Load(f, fan_.group_begin + g), hn::Set(f, far)));
-            groups |= bits_of(f, hn::And(in_depth, hn::And(in_x, in_y)));
+            groups |= bits_of(f, hn::And(in_depth, hn::And(in_x, in_y))) << g;
         }
-        return groups != 0;
+        return groups;
     }
 
 private:

@@ -41,6 +41,7 @@ public:
     }
 
 private:
+    static constexpr unsigned kAllGroups = (1u << RayFan::kGroups) - 1;
     static constexpr unsigned kTooFew = 4; // of rays of which any hit will do, in many leaves
 
     // Nearest first, for the ends that hits draw in.
@@ -49,24 +50,28 @@ private:
         struct Waiting {
             std::uint32_t code;
             float entry;
+            unsigned groups;
         };
         const FanSides sides(fan_);
         Waiting stack[kMostWaiting];
         unsigned waiting = 0;
-        Waiting next{0, sides.begin()};
+        Waiting next{0, sides.begin(), kAllGroups};
         Entered entered;
         end_ = farthest_end();
         for (;;) {
             if ((next.code & ChildCode::kLeaf) != 0) {
                 if (++leaves_ > fan_.most_leaves) return 0;
-                visit_leaf(next.code);
+                visit_leaf(next.code, next.groups);
             } else {
                 const WideNode& node = mesh_.nodes[next.code];
                 sides.enter_children(node, end_, entered);
                 const unsigned base = waiting;
                 for (unsigned hits = entered.children; hits != 0; hits &= hits - 1) {
                     const auto i = static_cast<unsigned>(__builtin_ctz(hits));
-                    const Waiting child{node.child[i], entered.entries[i]};
+                    const unsigned groups =
+                        (node.child[i] & ChildCode::kLeaf) != 0 ? sides.groups_entering(node, i) : kAllGroups;
+                    if (groups == 0) continue;
+                    const Waiting child{node.child[i], entered.entries[i], groups};
                     fetch(child.code);
                     unsigned at = waiting++;
                     for (; at > base && stack[at - 1].entry < child.entry; --at)
@@ -89,13 +94,14 @@ private:
         unsigned waiting = 0;
         std::uint32_t next = 0;
         Entered entered;
+        unsigned groups[WideNode::kChildren]; // that enter a leaf
         end_ = farthest_end();
         const Occluders known = last_occluders().take(mesh_.nodes, fan_);
         for (unsigned i = 0; i < known.count; ++i) {
             // They may be of a mesh that was here before: any leaf of this one will do.
             if (const std::uint32_t code = known.leaves[i];
                 (code & ChildCode::kNumber) + ((code & ChildCode::kTwoBlocks) != 0 ? 2 : 1) <= mesh_.blocks)
-                visit_leaf(code);
+                visit_leaf(code, kAllGroups);
             if (end_ < 0) return settle_hidden();
         }
         for (;;) {
@@ -111,13 +117,15 @@ private:
             for (unsigned hits = entered.children & leaf_bits; hits != 0; hits &= hits - 1) {
                 const auto i = static_cast<unsigned>(__builtin_ctz(hits));
                 // Shadow rays start at all depths: what all together meet is often met by none.
-                if (!sides.some_group_enters(node, i)) continue;
+                groups[i] = sides.groups_entering(node, i);
+                if (groups[i] == 0) continue;
                 fetch(node.child[i]);
                 some |= 1u << i;
             }
             for (; some != 0; some &= some - 1) {
                 if (++leaves_ > fan_.most_leaves) return found_.settle();
-                visit_leaf(node.child[__builtin_ctz(some)]);
+                const auto i = static_cast<unsigned>(__builtin_ctz(some));
+                visit_leaf(node.child[i], groups[i]);
                 if (end_ < 0) return settle_hidden();
                 if (leaves_ > fan_.most_leaves / 3 && found_.missing() <= kTooFew) {
                     left_few_ = true;
@@ -172,7 +180,7 @@ private:
         return hn::GetLane(hn::MaxOfLanes(f, most));
     }
 
-    HWY_INLINE void visit_leaf(std::uint32_t code)
+    HWY_INLINE void visit_leaf(std::uint32_t code, unsigned groups)
     {
         const std::uint32_t first = code & ChildCode::kNumber;
         FanLeaf seen;
@@ -181,13 +189,13 @@ private:
         bool drawn = false;
         for (unsigned left = seen.meeting & ~seen.faces; left != 0; left &= left - 1) {
             const auto lane = static_cast<unsigned>(__builtin_ctz(left));
-            for (unsigned groups = groups_near(seen, lane); groups != 0; groups &= groups - 1)
-                drawn = ask_group(static_cast<unsigned>(__builtin_ctz(groups)),
+            for (unsigned near = groups_near(seen, lane) & groups; near != 0; near &= near - 1)
+                drawn = ask_group(static_cast<unsigned>(__builtin_ctz(near)),
                                   first * TriangleBlock::kLanes + lane) ||
                         drawn;
         }
         if (const unsigned certain = seen.meeting & seen.faces; certain != 0)
-            for (std::uint64_t pairs = pairs_meeting(seen, certain); pairs != 0; pairs &= pairs - 1) {
+            for (std::uint64_t pairs = pairs_meeting(seen, certain, groups); pairs != 0; pairs &= pairs - 1) {
                 const auto pair = static_cast<unsigned>(__builtin_ctzll(pairs));
                 const unsigned lane = pair % FanLeaf::kLanes;
                 drawn =
@@ -200,7 +208,7 @@ private:
     }
 
     // Bit group * kLanes + lane: some ray of the group may hit that triangle.
-    HWY_INLINE std::uint64_t pairs_meeting(const FanLeaf& seen, unsigned certain) const
+    HWY_INLINE std::uint64_t pairs_meeting(const FanLeaf& seen, unsigned certain, unsigned groups) const
     {
         static_assert(FanLeaf::kLanes * RayFan::kGroups == 64);
         const Eight d;
@@ -210,7 +218,7 @@ private:
         for (unsigned i = 0; i < FanLeaf::kLanes; i += kAtOnce) {
             if ((certain >> i & ((1u << kAtOnce) - 1)) == 0) continue;
             const auto load = [&](const float* of) HWY_ATTR { return hn::Load(d, of + i); };
-            const V nearest = load(seen.nearest), farthest = load(seen.farthest);
+            const V nearest = load(seen.nearest);
             const V least_x = load(seen.least_x), most_x = load(seen.most_x);
             const V least_y = load(seen.least_y), most_y = load(seen.most_y);
             const V error = hn::Neg(load(seen.edge_error)), zero = hn::Zero(d);
@@ -224,11 +232,11 @@ private:
                 }
                 at[k] = load(seen.edge[k][2]);
             }
-            for (unsigned g = 0; g < RayFan::kGroups; ++g) {
+            for (unsigned some = groups; some != 0; some &= some - 1) {
+                const auto g = static_cast<unsigned>(__builtin_ctz(some));
                 const V low_x = hn::Set(d, fan_.least_x[g]), high_x = hn::Set(d, fan_.most_x[g]);
                 const V low_y = hn::Set(d, fan_.least_y[g]), high_y = hn::Set(d, fan_.most_y[g]);
-                auto out = hn::Or(hn::Lt(hn::Set(d, fan_.group_end[g]), nearest),
-                                  hn::Lt(farthest, hn::Set(d, fan_.group_begin[g])));
+                auto out = hn::Lt(hn::Set(d, fan_.group_end[g]), nearest);
                 out = hn::Or(out, hn::Or(hn::Lt(high_x, least_x), hn::Lt(most_x, low_x)));
                 out = hn::Or(out, hn::Or(hn::Lt(high_y, least_y), hn::Lt(most_y, low_y)));
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -291,10 +299,10 @@ private:
             const auto det = along(seen.whole), det_error = hn::Set(f, seen.whole_error[lane]);
             const auto most_det = hn::Add(det, det_error), least_det = hn::Sub(det, det_error);
             const auto least = hn::Set(f, seen.least_volume[lane]), most = hn::Set(f, seen.most_volume[lane]);
-            // No hit: beside the triangle, or the plane is met too late or too early.
+            // No hit: beside the triangle, or the plane is met too late. Rays of a fan begin at its apex, or nearly so:
+            // what is too early has been left out by `all_begin`, or is told by the exact test.
             const auto out = hn::Or(hn::Lt(inside, hn::Neg(error)),
-                                    hn::Or(hn::Lt(hn::Mul(hn::Load(f, fan_.end + ray), most_det), least),
-                                           hn::Lt(most, hn::Mul(hn::Load(f, fan_.begin + ray), least_det))));
+                                    hn::Lt(hn::Mul(hn::Load(f, fan_.end + ray), most_det), least));
             const unsigned rays = ~bits_of(f, out) & ((1u << kGroupLanes) - 1);
             if (rays == 0) continue;
             // A hit for certain, and nearer than what is known: the bounds of its depth, quotients of these, say so.

@@ -27,7 +27,7 @@ inline constexpr float kSteepest = 1.25f;
 
 // Where the triangles that shadow rays start on are much smaller than what lies between two of the rays, they have few
 // leaves in common: when 64 rays have met this many, those that have not hit are followed in another way.
-inline constexpr unsigned kLeavesOfFan = 48;
+inline constexpr unsigned kLeavesOfFan = 72;
 // The same of rays from a camera, which part only where triangles are far smaller than what lies between them.
 inline constexpr unsigned kLeavesOfCameraFan = 256;
 
