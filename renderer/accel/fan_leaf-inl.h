@@ -172,8 +172,21 @@ private:
         const auto store = [&](V value, float* to) HWY_ATTR { hn::Store(value, d, to + lane); };
         V flip = hn::CopySign(hn::Zero(d), volume); // makes the side that is seen the inner one
         if constexpr (kPrecise) {
-            flip = see_planes(
-                at, farthest, longest, fan_.rounded > 0 ? longest_squared : hn::Zero(d), lane, out);
+            // What float makes of the plane bounds its errors well enough, where 15 of L^2 are added to its size.
+            const V of_corners = fan_.rounded > 0 ? longest_squared : hn::Zero(d);
+            const V slack =
+                hn::MulAdd(hn::MulAdd(longest_squared, set(0x1p-20f), size_of_whole),
+                           blur,
+                           hn::MulAdd(hn::Mul(of_corners, set(0x1.8p-20f)),
+                                      reached,
+                                      hn::MulAdd(hn::Mul(longest, set(0x1p-40f)), squared, tiny)));
+            flip = see_planes(at, slack, lane, out);
+            store(
+                hn::MulAdd(
+                    size_of_whole,
+                    set(0x1p-20f),
+                    hn::MulAdd(of_corners, set(0x1p-19f), hn::MulAdd(longest_squared, set(0x1p-39f), tiny))),
+                out.whole_error);
         } else {
             const V size = hn::Abs(volume), error = hn::MulAdd(size, set(0x1p-22f), volume_error);
             out.faces |= bits_of(d, hn::Gt(size, error)) << lane;
@@ -193,17 +206,11 @@ private:
         bound_slopes(corner, depth_slack, lane, out);
     }
 
-    // Planes and depths in double. The signs that make the sides that are seen the inner ones.
-    HWY_INLINE V see_planes(const V (&corners)[3][3],
-                            V farthest_corner,
-                            V longest_edge,
-                            V rounding,
-                            unsigned lane,
-                            FanLeaf& out) const
+    // Planes and depths in double, which `slack` says what they are off by. The signs that make the sides that are seen the inner ones.
+    HWY_INLINE V see_planes(const V (&corners)[3][3], V slack, unsigned lane, FanLeaf& out) const
     {
-        const auto flips_of = [&](auto part) HWY_ATTR {
-            return see_planes_of(part, corners, farthest_corner, longest_edge, rounding, lane, out);
-        };
+        const auto flips_of = [&](auto part)
+                                  HWY_ATTR { return see_planes_of(part, corners, slack, lane, out); };
 #if HWY_TARGET != HWY_SCALAR && HWY_MAX_BYTES < 64
         return hn::Combine(D(), flips_of(SecondPart()), flips_of(FirstPart()));
 #else
@@ -234,21 +241,13 @@ private:
 #endif
 
     template <class Part>
-    HWY_INLINE hn::Vec<Floats> see_planes_of(Part part,
-                                             const V (&corners)[3][3],
-                                             V farthest_corner,
-                                             V longest_edge,
-                                             V rounding,
-                                             unsigned lane,
-                                             FanLeaf& out) const
+    HWY_INLINE hn::Vec<Floats>
+    see_planes_of(Part part, const V (&corners)[3][3], V slack, unsigned lane, FanLeaf& out) const
     {
         const Doubles d;
         const Floats f;
         using W = hn::Vec<Doubles>;
         const auto set = [&](double value) HWY_ATTR { return hn::Set(d, value); };
-        const auto sizes = [&](const W(&v)[3]) HWY_ATTR {
-            return hn::Add(hn::Abs(v[0]), hn::Add(hn::Abs(v[1]), hn::Abs(v[2])));
-        };
         W corner[3], along[2][3], whole[3];
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const W a = widen(part, corners[0][axis]), b = widen(part, corners[1][axis]),
@@ -263,30 +262,13 @@ private:
         }
         const W volume =
             hn::MulAdd(whole[0], corner[0], hn::MulAdd(whole[1], corner[1], hn::Mul(whole[2], corner[2])));
-        const W flip = hn::CopySign(hn::Zero(d), volume), size = hn::Abs(volume),
-                size_of_whole = sizes(whole);
-        const W longest = widen(part, longest_edge);
-        const W reached = hn::Add(widen(part, farthest_corner), set(fan_.reach));
-        const W rounding_of_corners = widen(part, rounding);
-        const W error = hn::MulAdd(
-            size,
-            set(0x1p-22),
-            hn::MulAdd(size_of_whole,
-                       set(fan_.blur),
-                       hn::MulAdd(hn::Mul(rounding_of_corners, set(0x1.8p-20)),
-                                  reached,
-                                  hn::Mul(hn::Mul(longest, set(0x1p-40)), hn::Mul(reached, reached)))));
+        const W flip = hn::CopySign(hn::Zero(d), volume), size = hn::Abs(volume);
+        const W error = hn::MulAdd(size, set(0x1p-22), widen(part, slack));
         out.faces |= bits_of(d, hn::Gt(size, error)) << (lane + part);
         const auto store = [&](W value, float* to)
                                HWY_ATTR { hn::Store(hn::DemoteTo(f, value), f, to + lane + part); };
         store(hn::Sub(size, error), out.least_volume);
         store(hn::Add(size, error), out.most_volume);
-        store(hn::MulAdd(size_of_whole,
-                         set(0x1p-20),
-                         hn::MulAdd(rounding_of_corners,
-                                    set(0x1p-19),
-                                    hn::Mul(hn::Mul(longest, longest), set(0x1p-46)))),
-              out.whole_error);
         for (std::size_t axis = 0; axis < 3; ++axis)
             store(hn::Xor(whole[axis], flip), out.whole[axis]);
         return hn::DemoteTo(f, flip);
