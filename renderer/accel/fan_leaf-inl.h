@@ -154,10 +154,10 @@ private:
         M out_of_reach = hn::Or(hn::Lt(set(end_), nearest), hn::Lt(behind, set(fan_.all_begin)));
         V least_of_most = set(std::numeric_limits<float>::infinity()), most_of_least = hn::Neg(least_of_most);
         for (const auto& e : edge) {
-            const V ax = hn::Mul(e[0], set(fan_.all_least_x)), bx = hn::Mul(e[0], set(fan_.all_most_x));
-            const V ay = hn::Mul(e[1], set(fan_.all_least_y)), by = hn::Mul(e[1], set(fan_.all_most_y));
-            least_of_most = hn::Min(least_of_most, hn::Add(hn::Add(hn::Max(ax, bx), hn::Max(ay, by)), e[2]));
-            most_of_least = hn::Max(most_of_least, hn::Add(hn::Add(hn::Min(ax, bx), hn::Min(ay, by)), e[2]));
+            const V middle = hn::MulAdd(e[0], set(fan_.middle_x), hn::MulAdd(e[1], set(fan_.middle_y), e[2]));
+            const V span = hn::MulAdd(hn::Abs(e[0]), set(fan_.half_x), hn::Mul(hn::Abs(e[1]), set(fan_.half_y)));
+            least_of_most = hn::Min(least_of_most, hn::Add(middle, span));
+            most_of_least = hn::Max(most_of_least, hn::Sub(middle, span));
         }
         const M beyond = hn::Or(hn::And(seen_from_outside, hn::Lt(least_of_most, hn::Neg(edge_error))),
                                 hn::And(seen_from_inside, hn::Lt(edge_error, most_of_least)));

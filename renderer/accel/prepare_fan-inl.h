@@ -293,6 +293,14 @@ private:
         fan_.all_most_y = find_best(fan_.slope_y, fan_.most_y, Greater());
         fan_.all_begin = find_best(fan_.begin, fan_.group_begin, Lesser());
         find_best(fan_.end, fan_.group_end, Greater());
+        halve(fan_.all_least_x, fan_.all_most_x, fan_.middle_x, fan_.half_x);
+        halve(fan_.all_least_y, fan_.all_most_y, fan_.middle_y, fan_.half_y);
+    }
+
+    static HWY_INLINE void halve(float least, float most, float& middle, float& half)
+    {
+        middle = (least + most) / 2;
+        half = (most - least) * (0.5f + 0x1p-20f) + std::abs(middle) * 0x1p-22f;
     }
 
     RayFan& fan_;

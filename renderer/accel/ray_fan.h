@@ -43,6 +43,8 @@ struct RayFan {
     alignas(32) float group_begin[kGroups], group_end[kGroups];
     // And of all of them.
     float all_least_x, all_most_x, all_least_y, all_most_y, all_begin;
+    float middle_x, half_x, middle_y,
+        half_y; // what is within half of the middle holds all slopes, roundings too
 
     unsigned groups() const { return (count + kGroup - 1) / kGroup; }
     double sign() const { return turned ? -1 : 1; }
