@@ -15,16 +15,16 @@ HWY_BEFORE_NAMESPACE();
 namespace renderer::HWY_NAMESPACE {
 namespace {
 
-// With d = (slope_x, slope_y, 1): the ray passes within edge k where dot(edge[k], d) >= 0, and meets the plane at
-// depth volume / dot(whole, d). What is computed from this is off by less than the errors told here; they also
-// hold for what the double test computes.
+// With d = (slope_x, slope_y, 1): a ray passes within edge k where dot(edge[k], d) >= 0, and meets the plane at depth
+// volume / dot(whole, d). Both are told at their largest: they are less than what is computed, by less than the slack.
+// That also holds for what the double test computes.
 struct FanLeaf {
     static constexpr unsigned kLanes = 2 * TriangleBlock::kLanes;
     unsigned meeting = 0; // bit i: some ray may hit triangle i, and the rest is told of it
     unsigned faces = 0;   // bit i: which side of it the apex sees is certain; that counts as the inner one
     alignas(32) float edge[3][3][kLanes]; // [edge][axis][triangle]
     alignas(32) float whole[3][kLanes];
-    alignas(32) float edge_error[kLanes], whole_error[kLanes];
+    alignas(32) float edge_slack[kLanes], whole_slack[kLanes];
     alignas(32) float least_volume[kLanes],
         most_volume[kLanes];                             // certain bounds, positive where it is a face
     alignas(32) float nearest[kLanes], farthest[kLanes]; // certain bounds of the corners' depths
@@ -155,7 +155,8 @@ private:
         V least_of_most = set(std::numeric_limits<float>::infinity()), most_of_least = hn::Neg(least_of_most);
         for (const auto& e : edge) {
             const V middle = hn::MulAdd(e[0], set(fan_.middle_x), hn::MulAdd(e[1], set(fan_.middle_y), e[2]));
-            const V span = hn::MulAdd(hn::Abs(e[0]), set(fan_.half_x), hn::Mul(hn::Abs(e[1]), set(fan_.half_y)));
+            const V span =
+                hn::MulAdd(hn::Abs(e[0]), set(fan_.half_x), hn::Mul(hn::Abs(e[1]), set(fan_.half_y)));
             least_of_most = hn::Min(least_of_most, hn::Add(middle, span));
             most_of_least = hn::Max(most_of_least, hn::Sub(middle, span));
         }
@@ -172,45 +173,51 @@ private:
         const auto store = [&](V value, float* to) HWY_ATTR { hn::Store(value, d, to + lane); };
         V flip = hn::CopySign(hn::Zero(d), volume); // makes the side that is seen the inner one
         if constexpr (kPrecise) {
-            // What float makes of the plane bounds its errors well enough, where 15 of L^2 are added to its size.
+            // What float makes of the plane tells its size well enough, where what that may be off by is added.
             const V of_corners = fan_.rounded > 0 ? longest_squared : hn::Zero(d);
             const V slack =
-                hn::MulAdd(hn::MulAdd(longest_squared, set(0x1p-20f), size_of_whole),
+                hn::MulAdd(hn::MulAdd(longest_squared, set(0x1.8p-20f), size_of_whole),
                            blur,
                            hn::MulAdd(hn::Mul(of_corners, set(0x1.8p-20f)),
                                       reached,
                                       hn::MulAdd(hn::Mul(longest, set(0x1p-40f)), squared, tiny)));
-            flip = see_planes(at, slack, lane, out);
-            store(
-                hn::MulAdd(
-                    size_of_whole,
-                    set(0x1p-20f),
-                    hn::MulAdd(of_corners, set(0x1p-19f), hn::MulAdd(longest_squared, set(0x1p-39f), tiny))),
-                out.whole_error);
+            const V whole_error = hn::MulAdd(
+                size_of_whole,
+                set(0x1p-20f),
+                hn::MulAdd(of_corners, set(0x1p-19f), hn::MulAdd(longest_squared, set(0x1p-39f), tiny)));
+            flip = see_planes(at, slack, whole_error, lane, out);
+            store(hn::Add(whole_error, whole_error), out.whole_slack);
         } else {
             const V size = hn::Abs(volume), error = hn::MulAdd(size, set(0x1p-22f), volume_error);
             out.faces |= bits_of(d, hn::Gt(size, error)) << lane;
             store(hn::Sub(size, error), out.least_volume);
             store(hn::Add(size, error), out.most_volume);
-            store(hn::MulAdd(size_of_whole, set(0x1p-20f), hn::MulAdd(longest_squared, set(0x1p-19f), tiny)),
-                  out.whole_error);
-            for (std::size_t axis = 0; axis < 3; ++axis)
+            const V whole_error =
+                hn::MulAdd(size_of_whole, set(0x1p-20f), hn::MulAdd(longest_squared, set(0x1p-19f), tiny));
+            for (std::size_t axis = 0; axis < 2; ++axis)
                 store(hn::Xor(whole[axis], flip), out.whole[axis]);
+            store(hn::Add(hn::Xor(whole[2], flip), whole_error), out.whole[2]);
+            store(hn::Add(whole_error, whole_error), out.whole_slack);
         }
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t axis = 0; axis < 2; ++axis)
                 store(hn::Xor(edge[k][axis], flip), out.edge[k][axis]);
-        store(edge_error, out.edge_error);
+            store(hn::Add(hn::Xor(edge[k][2], flip), edge_error), out.edge[k][2]);
+        }
+        store(hn::Add(edge_error, edge_error), out.edge_slack);
         store(nearest, out.nearest);
         store(behind, out.farthest);
         bound_slopes(corner, depth_slack, lane, out);
     }
 
-    // Planes and depths in double, which `slack` says what they are off by. The signs that make the sides that are seen the inner ones.
-    HWY_INLINE V see_planes(const V (&corners)[3][3], V slack, unsigned lane, FanLeaf& out) const
+    // Planes and depths in double; `slack` says what these are off by. The signs that make the sides that are seen the
+    // inner ones.
+    HWY_INLINE V
+    see_planes(const V (&corners)[3][3], V slack, V whole_error, unsigned lane, FanLeaf& out) const
     {
-        const auto flips_of = [&](auto part)
-                                  HWY_ATTR { return see_planes_of(part, corners, slack, lane, out); };
+        const auto flips_of = [&](auto part) HWY_ATTR {
+            return see_planes_of(part, corners, slack, whole_error, lane, out);
+        };
 #if HWY_TARGET != HWY_SCALAR && HWY_MAX_BYTES < 64
         return hn::Combine(D(), flips_of(SecondPart()), flips_of(FirstPart()));
 #else
@@ -241,8 +248,8 @@ private:
 #endif
 
     template <class Part>
-    HWY_INLINE hn::Vec<Floats>
-    see_planes_of(Part part, const V (&corners)[3][3], V slack, unsigned lane, FanLeaf& out) const
+    HWY_INLINE hn::Vec<Floats> see_planes_of(
+        Part part, const V (&corners)[3][3], V slack, V whole_error, unsigned lane, FanLeaf& out) const
     {
         const Doubles d;
         const Floats f;
@@ -269,8 +276,9 @@ private:
                                HWY_ATTR { hn::Store(hn::DemoteTo(f, value), f, to + lane + part); };
         store(hn::Sub(size, error), out.least_volume);
         store(hn::Add(size, error), out.most_volume);
-        for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t axis = 0; axis < 2; ++axis)
             store(hn::Xor(whole[axis], flip), out.whole[axis]);
+        store(hn::Add(hn::Xor(whole[2], flip), widen(part, whole_error)), out.whole[2]);
         return hn::DemoteTo(f, flip);
     }
 

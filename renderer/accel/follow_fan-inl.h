@@ -221,7 +221,7 @@ private:
             const V nearest = load(seen.nearest);
             const V least_x = load(seen.least_x), most_x = load(seen.most_x);
             const V least_y = load(seen.least_y), most_y = load(seen.most_y);
-            const V error = hn::Neg(load(seen.edge_error)), zero = hn::Zero(d);
+            const V zero = hn::Zero(d);
             // An edge function is largest in one corner of a group's bounds.
             V up[3][2], down[3][2], at[3];
             for (std::size_t k = 0; k < 3; ++k) {
@@ -246,7 +246,7 @@ private:
                         hn::MulAdd(down[k][0],
                                    low_x,
                                    hn::MulAdd(up[k][1], high_y, hn::MulAdd(down[k][1], low_y, at[k]))));
-                    out = hn::Or(out, hn::Lt(most, error));
+                    out = hn::Or(out, hn::Lt(most, zero));
                 }
                 pairs |= std::uint64_t{~bits_of(d, out) & ((1u << kAtOnce) - 1)} << (g * FanLeaf::kLanes + i);
             }
@@ -295,23 +295,23 @@ private:
             };
             const auto inside =
                 hn::Min(along(seen.edge[0]), hn::Min(along(seen.edge[1]), along(seen.edge[2])));
-            const auto error = hn::Set(f, seen.edge_error[lane]);
-            const auto det = along(seen.whole), det_error = hn::Set(f, seen.whole_error[lane]);
-            const auto most_det = hn::Add(det, det_error), least_det = hn::Sub(det, det_error);
-            const auto least = hn::Set(f, seen.least_volume[lane]), most = hn::Set(f, seen.most_volume[lane]);
+            const auto most_det = along(seen.whole);
+            const auto least = hn::Set(f, seen.least_volume[lane]);
             // No hit: beside the triangle, or the plane is met too late. Rays of a fan begin at its apex, or nearly so:
             // what is too early has been left out by `all_begin`, or is told by the exact test.
-            const auto out = hn::Or(hn::Lt(inside, hn::Neg(error)),
+            const auto out = hn::Or(hn::Lt(inside, hn::Zero(f)),
                                     hn::Lt(hn::Mul(hn::Load(f, fan_.end + ray), most_det), least));
             const unsigned rays = ~bits_of(f, out) & ((1u << kGroupLanes) - 1);
             if (rays == 0) continue;
             // A hit for certain, and nearer than what is known: the bounds of its depth, quotients of these, say so.
+            const auto least_det = hn::Sub(most_det, hn::Set(f, seen.whole_slack[lane])),
+                       most = hn::Set(f, seen.most_volume[lane]);
             const auto less = hn::Mul(least, hn::Set(f, 1 - 0x1p-21f)),
                        more = hn::Mul(most, hn::Set(f, 1 + 0x1p-21f));
-            const auto hit =
-                hn::And(hn::And(hn::Lt(error, inside), hn::Lt(hn::Zero(f), least_det)),
-                        hn::And(hn::Lt(hn::Mul(hn::Load(f, fan_.after + ray), most_det), less),
-                                hn::Lt(more, hn::Mul(hn::Load(f, fan_.before + ray), least_det))));
+            const auto hit = hn::And(
+                hn::And(hn::Lt(hn::Set(f, seen.edge_slack[lane]), inside), hn::Lt(hn::Zero(f), least_det)),
+                hn::And(hn::Lt(hn::Mul(hn::Load(f, fan_.after + ray), most_det), less),
+                        hn::Lt(more, hn::Mul(hn::Load(f, fan_.before + ray), least_det))));
             const unsigned hits = bits_of(f, hit) & rays;
             if (hits != 0) {
                 if constexpr (kAnyHit) {
