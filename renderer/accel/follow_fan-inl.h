@@ -70,7 +70,10 @@ private:
                     const auto i = static_cast<unsigned>(__builtin_ctz(hits));
                     const unsigned groups =
                         (node.child[i] & ChildCode::kLeaf) != 0 ? sides.groups_entering(node, i) : kAllGroups;
-                    if (groups == 0) continue;
+                    if (groups == 0) {
+                        ++leaves_;
+                        continue;
+                    }
                     const Waiting child{node.child[i], entered.entries[i], groups};
                     fetch(child.code);
                     unsigned at = waiting++;
