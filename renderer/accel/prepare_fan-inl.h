@@ -102,36 +102,35 @@ private:
     // As many rays as a vector has lanes: origins from the apex, directions, t_min and t_max, rounded to float.
     struct FloatRays {
         V from[3], along[3], t_min, t_max;
+        HWY_INLINE FloatRays() {} // one that is implied would not be of this target
     };
 
-    HWY_INLINE FloatRays read(unsigned first) const
+    HWY_INLINE void read(unsigned first, FloatRays& out) const
     {
-        if (first + kGroupLanes <= count_) return narrow(rays_ + first);
+        if (first + kGroupLanes <= count_) return narrow(rays_ + first, out);
         Uninitialized<Ray, kGroupLanes> filled_up;
         for (unsigned i = 0; i < kGroupLanes; ++i)
             filled_up[i] = rays_[std::min(first + i, count_ - 1)];
-        return narrow(filled_up.data());
+        narrow(filled_up.data(), out);
     }
 
 #if HWY_TARGET == HWY_SCALAR
-    HWY_INLINE FloatRays narrow(const Ray* ray) const
+    HWY_INLINE void narrow(const Ray* ray, FloatRays& out) const
     {
         const Group f;
-        const auto set = [&](double value) { return hn::Set(f, static_cast<float>(value)); };
-        const Vec3d from = ray->origin - apex_, along = ray->direction;
-        return {{set(from.x), set(from.y), set(from.z)},
-                {set(along.x), set(along.y), set(along.z)},
-                set(ray->t_min),
-                set(ray->t_max)};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            out.from[axis] = hn::Set(f, static_cast<float>(ray->origin[axis] - apex_[axis]));
+            out.along[axis] = hn::Set(f, static_cast<float>(ray->direction[axis]));
+        }
+        out.t_min = hn::Set(f, static_cast<float>(ray->t_min));
+        out.t_max = hn::Set(f, static_cast<float>(ray->t_max));
     }
 #else
-    HWY_INLINE FloatRays narrow(const Ray* rays) const
+    HWY_INLINE void narrow(const Ray* rays, FloatRays& out) const
     {
         static_assert(sizeof(Ray) == 8 * sizeof(double));
-        FloatRays out;
         narrow_half<true>(rays, out.from[0], out.from[1], out.from[2], out.along[0]);
         narrow_half<false>(rays, out.along[1], out.along[2], out.t_min, out.t_max);
-        return out;
     }
 
     // Four members of each ray, as vectors of one member each.
@@ -188,9 +187,12 @@ private:
         auto sound = hn::Eq(zero, zero);
         auto aside = zero, reach = zero;
         for (unsigned i = 0; i < fan_.groups() * RayFan::kGroup; i += kGroupLanes) {
-            const auto [from, along, t_min, t_max] = read(i);
-            const V dz = along[fan_.z], inverse = hn::Div(hn::Set(f, 1.0f), dz);
-            const V sx = hn::Mul(along[fan_.x], inverse), sy = hn::Mul(along[fan_.y], inverse);
+            FloatRays rays;
+            read(i, rays);
+            const auto& from = rays.from;
+            const V t_min = rays.t_min, t_max = rays.t_max;
+            const V dz = rays.along[fan_.z], inverse = hn::Div(hn::Set(f, 1.0f), dz);
+            const V sx = hn::Mul(rays.along[fan_.x], inverse), sy = hn::Mul(rays.along[fan_.y], inverse);
             const V ahead = hn::Mul(kOutward ? dz : hn::Neg(dz), sign);
             // With a NaN anywhere something is not true.
             const auto steepest = hn::Set(f, kSteepest);
