@@ -70,6 +70,10 @@ private:
     {
         return hn::Set(D(), value);
     }
+    static HWY_INLINE V tiny()
+    {
+        return set(0x1p-110f);
+    }
     static HWY_INLINE V max3(V a, V b, V c)
     {
         return hn::Max(hn::Max(a, b), c);
@@ -84,6 +88,38 @@ private:
         return hn::MulSub(a[i], b[j], hn::Mul(a[j], b[i]));
     }
 
+    // As many triangles as a vector has lanes, seen in float.
+    struct Triangles {
+        V at[3][3], corner[3][3], along[3][3]; // [corner][axis]; from the apex; from the corner to the next
+        V farthest, longest, longest_squared;  // of the errors' A and L
+        V reached, reached_squared;
+        V edge[3][3], edge_error;
+        V whole[3], size_of_whole, volume, volume_error;
+        V nearest, behind, depth_slack;
+        HWY_INLINE Triangles() {} // one that is implied would not be of this target
+    };
+
+    HWY_INLINE void
+    read(const TriangleBlock& first, const TriangleBlock& second, unsigned lane, Triangles& t) const
+    {
+        const std::size_t axes[3] = {fan_.x, fan_.y, fan_.z};
+        t.farthest = t.longest = hn::Zero(D());
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const V high = set(fan_.apex_high[axis]), low = set(fan_.apex_low[axis]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                V& at = t.at[k][axis];
+                at = load(first.corners[k][axes[axis]], second.corners[k][axes[axis]], lane);
+                if (axis == 2) at = hn::Xor(at, set(fan_.turned ? -0.0f : 0.0f));
+                t.corner[k][axis] = hn::Sub(hn::Sub(at, high), low);
+                t.farthest = hn::Max(t.farthest, hn::Abs(t.corner[k][axis]));
+            }
+            for (std::size_t k = 0; k < 3; ++k) {
+                t.along[k][axis] = hn::Sub(t.at[k == 2 ? 0 : k + 1][axis], t.at[k][axis]);
+                t.longest = hn::Max(t.longest, hn::Abs(t.along[k][axis]));
+            }
+        }
+    }
+
     // Errors, relative ones in units of 2^-24. A is the farthest corner's largest coordinate from the apex, L that of the
     // longest edge, w at most kSteepest. Corners from the apex have 2, the apex being two floats, and 2^-45 of the
     // coordinates' size, which `blur` takes in; edges from corner to corner 1. A product of both, subtracted from
@@ -95,119 +131,125 @@ private:
     // than floats are off by up to 2^-24 of the coordinates' size: their own part is in `blur`, that of their edges is as
     // if those were longer by twice the size; in a product of two edges the square of that is left over. What is below
     // float's range is less than 2^-110. Slopes of corners have six roundings, those of rays four.
-    HWY_INLINE void see_lanes(const TriangleBlock* blocks, unsigned count, unsigned lane, FanLeaf& out) const
+    HWY_INLINE void measure(Triangles& t) const
     {
         const D d;
-        const TriangleBlock &first = blocks[0], &second = blocks[count - 1];
-        const std::size_t axes[3] = {fan_.x, fan_.y, fan_.z};
-        const V blur = set(fan_.blur), reach = set(fan_.reach), tiny = set(0x1p-110f);
-        V at[3][3], corner[3][3], along[3][3]; // from the apex; from the corner to the next
-        V farthest = hn::Zero(d), longest = hn::Zero(d);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const V high = set(fan_.apex_high[axis]), low = set(fan_.apex_low[axis]);
-            for (std::size_t k = 0; k < 3; ++k) {
-                at[k][axis] = load(first.corners[k][axes[axis]], second.corners[k][axes[axis]], lane);
-                if (axis == 2) at[k][axis] = hn::Xor(at[k][axis], set(fan_.turned ? -0.0f : 0.0f));
-                corner[k][axis] = hn::Sub(hn::Sub(at[k][axis], high), low);
-                farthest = hn::Max(farthest, hn::Abs(corner[k][axis]));
-            }
-            for (std::size_t k = 0; k < 3; ++k) {
-                along[k][axis] = hn::Sub(at[k == 2 ? 0 : k + 1][axis], at[k][axis]);
-                longest = hn::Max(longest, hn::Abs(along[k][axis]));
-            }
-        }
-        V edge[3][3], whole[3], largest = hn::Zero(d);
+        V largest = hn::Zero(d);
         for (std::size_t axis = 0; axis < 3; ++axis)
-            whole[axis] = cross(along[0], along[1], axis);
+            t.whole[axis] = cross(t.along[0], t.along[1], axis);
         for (std::size_t k = 0; k < 3; ++k) {
             for (std::size_t axis = 0; axis < 3; ++axis)
-                edge[k][axis] = cross(corner[k], along[k], axis);
-            largest = hn::Max(largest, sum_of_sizes(edge[k]));
+                t.edge[k][axis] = cross(t.corner[k], t.along[k], axis);
+            largest = hn::Max(largest, sum_of_sizes(t.edge[k]));
         }
         // As if they were longer where corners are more than the floats that are seen.
-        const V stretched = hn::Add(longest, set(fan_.rounded));
-        const V size_of_whole = sum_of_sizes(whole),
-                longest_squared = hn::Mul(stretched, hn::MulAdd(stretched, set(0x1p-21f), longest));
-        const V reached = hn::Add(farthest, reach), squared = hn::Mul(reached, reached);
-        const V edge_error =
-            hn::MulAdd(set(0x1p-20f),
-                       hn::MulAdd(set(2.5f), hn::Mul(farthest, stretched), largest),
-                       hn::MulAdd(longest, set(4 * fan_.blur), hn::MulAdd(squared, set(0x1p-44f), tiny)));
+        const V stretched = hn::Add(t.longest, set(fan_.rounded)), blur = set(fan_.blur);
+        t.size_of_whole = sum_of_sizes(t.whole);
+        t.longest_squared = hn::Mul(stretched, hn::MulAdd(stretched, set(0x1p-21f), t.longest));
+        t.reached = hn::Add(t.farthest, set(fan_.reach));
+        t.reached_squared = hn::Mul(t.reached, t.reached);
+        t.edge_error = hn::MulAdd(
+            set(0x1p-20f),
+            hn::MulAdd(set(2.5f), hn::Mul(t.farthest, stretched), largest),
+            hn::MulAdd(t.longest, set(4 * fan_.blur), hn::MulAdd(t.reached_squared, set(0x1p-44f), tiny())));
         // The side that float sees, for a first sieve.
-        const V volume = hn::MulAdd(
-            whole[0], corner[0][0], hn::MulAdd(whole[1], corner[0][1], hn::Mul(whole[2], corner[0][2])));
-        const V volume_error =
-            hn::MulAdd(hn::MulAdd(longest_squared, set(0x1.8p-20f), hn::Mul(size_of_whole, set(0x1.4p-22f))),
-                       farthest,
-                       hn::MulAdd(size_of_whole,
-                                  blur,
-                                  hn::MulAdd(hn::Mul(longest, set(0x1p-40f)),
-                                             squared,
-                                             hn::Mul(hn::Add(farthest, set(1)), tiny))));
-        const M seen_from_outside = hn::Gt(volume, volume_error),
-                seen_from_inside = hn::Gt(hn::Neg(volume), volume_error);
+        const V(&c)[3] = t.corner[0];
+        t.volume = hn::MulAdd(t.whole[0], c[0], hn::MulAdd(t.whole[1], c[1], hn::Mul(t.whole[2], c[2])));
+        t.volume_error = hn::MulAdd(
+            hn::MulAdd(t.longest_squared, set(0x1.8p-20f), hn::Mul(t.size_of_whole, set(0x1.4p-22f))),
+            t.farthest,
+            hn::MulAdd(t.size_of_whole,
+                       blur,
+                       hn::MulAdd(hn::Mul(t.longest, set(0x1p-40f)),
+                                  t.reached_squared,
+                                  hn::Mul(hn::Add(t.farthest, set(1)), tiny()))));
+        t.depth_slack = hn::MulAdd(t.farthest, set(0x1p-21f), blur);
+        t.nearest = hn::Sub(hn::Min(hn::Min(t.corner[0][2], t.corner[1][2]), t.corner[2][2]), t.depth_slack);
+        t.behind = hn::Add(max3(t.corner[0][2], t.corner[1][2], t.corner[2][2]), t.depth_slack);
+    }
 
-        // Outside of what all rays together may hit: beyond an edge, behind or before.
-        const V depth_slack = hn::MulAdd(farthest, set(0x1p-21f), blur);
-        const V nearest = hn::Sub(hn::Min(hn::Min(corner[0][2], corner[1][2]), corner[2][2]), depth_slack);
-        const V behind = hn::Add(max3(corner[0][2], corner[1][2], corner[2][2]), depth_slack);
-        M out_of_reach = hn::Or(hn::Lt(set(end_), nearest), hn::Lt(behind, set(fan_.all_begin)));
+    // Outside of what all rays together may hit: beyond an edge, behind or before.
+    HWY_INLINE M out_of_reach(const Triangles& t) const
+    {
         V least_of_most = set(std::numeric_limits<float>::infinity()), most_of_least = hn::Neg(least_of_most);
-        for (const auto& e : edge) {
+        for (const auto& e : t.edge) {
             const V middle = hn::MulAdd(e[0], set(fan_.middle_x), hn::MulAdd(e[1], set(fan_.middle_y), e[2]));
             const V span =
                 hn::MulAdd(hn::Abs(e[0]), set(fan_.half_x), hn::Mul(hn::Abs(e[1]), set(fan_.half_y)));
             least_of_most = hn::Min(least_of_most, hn::Add(middle, span));
             most_of_least = hn::Max(most_of_least, hn::Sub(middle, span));
         }
-        const M beyond = hn::Or(hn::And(seen_from_outside, hn::Lt(least_of_most, hn::Neg(edge_error))),
-                                hn::And(seen_from_inside, hn::Lt(edge_error, most_of_least)));
+        const M seen_from_outside = hn::Gt(t.volume, t.volume_error),
+                seen_from_inside = hn::Gt(hn::Neg(t.volume), t.volume_error);
+        const M beyond = hn::Or(hn::And(seen_from_outside, hn::Lt(least_of_most, hn::Neg(t.edge_error))),
+                                hn::And(seen_from_inside, hn::Lt(t.edge_error, most_of_least)));
+        return hn::Or(hn::Or(hn::Lt(set(end_), t.nearest), hn::Lt(t.behind, set(fan_.all_begin))), beyond);
+    }
+
+    HWY_INLINE void see_lanes(const TriangleBlock* blocks, unsigned count, unsigned lane, FanLeaf& out) const
+    {
+        const D d;
+        const TriangleBlock &first = blocks[0], &second = blocks[count - 1];
+        Triangles t;
+        read(first, second, lane, t);
+        measure(t);
         const hn::RebindToUnsigned<D> du;
         const auto empty = hn::RebindMask(
             d, hn::Eq(load(first.primitive, second.primitive, lane), hn::Set(du, TriangleBlock::kNone)));
-        out_of_reach = hn::Or(hn::Or(out_of_reach, empty), beyond);
         const unsigned there = (1u << (count * TriangleBlock::kLanes - lane)) - 1;
-        const unsigned meeting = ~bits_of(d, out_of_reach) & ((1u << kSeenAtOnce) - 1) & there;
+        const unsigned meeting =
+            ~bits_of(d, hn::Or(out_of_reach(t), empty)) & ((1u << kSeenAtOnce) - 1) & there;
         if (meeting == 0) return;
         out.meeting |= meeting << lane;
         const auto store = [&](V value, float* to) HWY_ATTR { hn::Store(value, d, to + lane); };
-        V flip = hn::CopySign(hn::Zero(d), volume); // makes the side that is seen the inner one
-        if constexpr (kPrecise) {
-            // What float makes of the plane tells its size well enough, where what that may be off by is added.
-            const V of_corners = fan_.rounded > 0 ? longest_squared : hn::Zero(d);
-            const V slack =
-                hn::MulAdd(hn::MulAdd(longest_squared, set(0x1.8p-20f), size_of_whole),
-                           blur,
-                           hn::MulAdd(hn::Mul(of_corners, set(0x1.8p-20f)),
-                                      reached,
-                                      hn::MulAdd(hn::Mul(longest, set(0x1p-40f)), squared, tiny)));
-            const V whole_error = hn::MulAdd(
-                size_of_whole,
-                set(0x1p-20f),
-                hn::MulAdd(of_corners, set(0x1p-19f), hn::MulAdd(longest_squared, set(0x1p-39f), tiny)));
-            flip = see_planes(at, slack, whole_error, lane, out);
-            store(hn::Add(whole_error, whole_error), out.whole_slack);
-        } else {
-            const V size = hn::Abs(volume), error = hn::MulAdd(size, set(0x1p-22f), volume_error);
-            out.faces |= bits_of(d, hn::Gt(size, error)) << lane;
-            store(hn::Sub(size, error), out.least_volume);
-            store(hn::Add(size, error), out.most_volume);
-            const V whole_error =
-                hn::MulAdd(size_of_whole, set(0x1p-20f), hn::MulAdd(longest_squared, set(0x1p-19f), tiny));
-            for (std::size_t axis = 0; axis < 2; ++axis)
-                store(hn::Xor(whole[axis], flip), out.whole[axis]);
-            store(hn::Add(hn::Xor(whole[2], flip), whole_error), out.whole[2]);
-            store(hn::Add(whole_error, whole_error), out.whole_slack);
-        }
+        const V flip = kPrecise ? tell_planes_in_double(t, lane, out) : tell_planes_in_float(t, lane, out);
         for (std::size_t k = 0; k < 3; ++k) {
             for (std::size_t axis = 0; axis < 2; ++axis)
-                store(hn::Xor(edge[k][axis], flip), out.edge[k][axis]);
-            store(hn::Add(hn::Xor(edge[k][2], flip), edge_error), out.edge[k][2]);
+                store(hn::Xor(t.edge[k][axis], flip), out.edge[k][axis]);
+            store(hn::Add(hn::Xor(t.edge[k][2], flip), t.edge_error), out.edge[k][2]);
         }
-        store(hn::Add(edge_error, edge_error), out.edge_slack);
-        store(nearest, out.nearest);
-        store(behind, out.farthest);
-        bound_slopes(corner, depth_slack, lane, out);
+        store(hn::Add(t.edge_error, t.edge_error), out.edge_slack);
+        store(t.nearest, out.nearest);
+        store(t.behind, out.farthest);
+        bound_slopes(t.corner, t.depth_slack, lane, out);
+    }
+
+    // The planes, and the signs that make the sides that are seen the inner ones.
+    HWY_INLINE V tell_planes_in_float(const Triangles& t, unsigned lane, FanLeaf& out) const
+    {
+        const D d;
+        const auto store = [&](V value, float* to) HWY_ATTR { hn::Store(value, d, to + lane); };
+        const V flip = hn::CopySign(hn::Zero(d), t.volume), size = hn::Abs(t.volume);
+        const V error = hn::MulAdd(size, set(0x1p-22f), t.volume_error);
+        out.faces |= bits_of(d, hn::Gt(size, error)) << lane;
+        store(hn::Sub(size, error), out.least_volume);
+        store(hn::Add(size, error), out.most_volume);
+        const V whole_error =
+            hn::MulAdd(t.size_of_whole, set(0x1p-20f), hn::MulAdd(t.longest_squared, set(0x1p-19f), tiny()));
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            store(hn::Xor(t.whole[axis], flip), out.whole[axis]);
+        store(hn::Add(hn::Xor(t.whole[2], flip), whole_error), out.whole[2]);
+        store(hn::Add(whole_error, whole_error), out.whole_slack);
+        return flip;
+    }
+
+    HWY_INLINE V tell_planes_in_double(const Triangles& t, unsigned lane, FanLeaf& out) const
+    {
+        const D d;
+        // What float makes of the plane tells its size well enough, where what that may be off by is added.
+        const V of_corners = fan_.rounded > 0 ? t.longest_squared : hn::Zero(d);
+        const V slack =
+            hn::MulAdd(hn::MulAdd(t.longest_squared, set(0x1.8p-20f), t.size_of_whole),
+                       set(fan_.blur),
+                       hn::MulAdd(hn::Mul(of_corners, set(0x1.8p-20f)),
+                                  t.reached,
+                                  hn::MulAdd(hn::Mul(t.longest, set(0x1p-40f)), t.reached_squared, tiny())));
+        const V whole_error = hn::MulAdd(
+            t.size_of_whole,
+            set(0x1p-20f),
+            hn::MulAdd(of_corners, set(0x1p-19f), hn::MulAdd(t.longest_squared, set(0x1p-39f), tiny())));
+        hn::Store(hn::Add(whole_error, whole_error), d, out.whole_slack + lane);
+        return see_planes(t.at, slack, whole_error, lane, out);
     }
 
     // Planes and depths in double; `slack` says what these are off by. The signs that make the sides that are seen the

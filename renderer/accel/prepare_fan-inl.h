@@ -98,6 +98,7 @@ private:
     }
 
     using V = hn::Vec<Group>;
+    static constexpr float kRelative = 0x1p-21f; // what numbers from a few roundings are off by
 
     // As many rays as a vector has lanes: origins from the apex, directions, t_min and t_max, rounded to float.
     struct FloatRays {
@@ -177,11 +178,33 @@ private:
     }
 #endif
 
+    // `blur`: what depths are off by, beside what is relative to them.
+    template <bool kOutward>
+    HWY_INLINE void keep(unsigned i, V slope_x, V slope_y, V begin, V end, V blur)
+    {
+        const Group f;
+        hn::Store(slope_x, f, fan_.slope_x + i);
+        hn::Store(slope_y, f, fan_.slope_y + i);
+        blur = hn::Add(blur, hn::Set(f, 0x1p-80f)); // a t_min too small for float
+        const auto slack = [&](V at)
+                               HWY_ATTR { return hn::MulAdd(hn::Abs(at), hn::Set(f, kRelative), blur); };
+        const V slack_of_begin = slack(begin), slack_of_end = slack(end);
+        hn::Store(hn::Max(hn::Sub(begin, slack_of_begin), hn::Zero(f)), f, fan_.begin + i);
+        hn::Store(hn::Add(begin, slack_of_begin), f, fan_.after + i);
+        hn::Store(hn::Add(end, slack_of_end), f, fan_.end + i);
+        V before = hn::Sub(end, slack_of_end);
+        if constexpr (kOutward) { // of an end at infinity there is no slack
+            const auto endless = hn::Eq(end, hn::Set(f, std::numeric_limits<float>::infinity()));
+            before = hn::IfThenElse(endless, end, before);
+        }
+        hn::Store(before, f, fan_.before + i);
+    }
+
     template <bool kOutward>
     HWY_INLINE bool finish()
     {
         const Group f;
-        const auto zero = hn::Zero(f), relative = hn::Set(f, 0x1p-21f),
+        const auto zero = hn::Zero(f), relative = hn::Set(f, kRelative),
                    infinity = hn::Set(f, std::numeric_limits<float>::infinity());
         const auto sign = hn::Set(f, fan_.turned ? -1.0f : 1.0f);
         auto sound = hn::Eq(zero, zero);
@@ -220,18 +243,7 @@ private:
                 sound = hn::And(sound, hn::Lt(zero, depth));
                 sound = hn::And(sound, hn::Lt(hn::Add(depth, hn::Add(across_x, across_y)), infinity));
             }
-            hn::Store(hn::Mul(sx, sign), f, fan_.slope_x + i);
-            hn::Store(hn::Mul(sy, sign), f, fan_.slope_y + i);
-            blur = hn::Add(blur, hn::Set(f, 0x1p-80f)); // a t_min too small for float
-            const auto slack = [&](V at) HWY_ATTR { return hn::MulAdd(hn::Abs(at), relative, blur); };
-            const V slack_of_begin = slack(begin), slack_of_end = slack(end);
-            hn::Store(hn::Max(hn::Sub(begin, slack_of_begin), zero), f, fan_.begin + i);
-            hn::Store(hn::Add(begin, slack_of_begin), f, fan_.after + i);
-            hn::Store(hn::Add(end, slack_of_end), f, fan_.end + i);
-            V before = hn::Sub(end, slack_of_end);
-            if constexpr (kOutward) // of an end at infinity there is no slack
-                before = hn::IfThenElse(hn::Eq(end, infinity), end, before);
-            hn::Store(before, f, fan_.before + i);
+            keep<kOutward>(i, hn::Mul(sx, sign), hn::Mul(sy, sign), begin, end, blur);
         }
         if (!hn::AllTrue(f, sound)) return false;
         fan_.aside = hn::GetLane(hn::MaxOfLanes(f, aside));
