@@ -95,7 +95,7 @@ private:
         V reached, reached_squared;
         V edge[3][3], edge_error;
         V whole[3], size_of_whole, volume, volume_error;
-        V nearest, behind, depth_slack;
+        V nearest, behind;        // certain bounds of the depths
         HWY_INLINE Triangles() {} // one that is implied would not be of this target
     };
 
@@ -163,9 +163,9 @@ private:
                        hn::MulAdd(hn::Mul(t.longest, set(0x1p-40f)),
                                   t.reached_squared,
                                   hn::Mul(hn::Add(t.farthest, set(1)), tiny()))));
-        t.depth_slack = hn::MulAdd(t.farthest, set(0x1p-21f), blur);
-        t.nearest = hn::Sub(hn::Min(hn::Min(t.corner[0][2], t.corner[1][2]), t.corner[2][2]), t.depth_slack);
-        t.behind = hn::Add(max3(t.corner[0][2], t.corner[1][2], t.corner[2][2]), t.depth_slack);
+        const V depth_slack = hn::MulAdd(t.farthest, set(0x1p-21f), blur);
+        t.nearest = hn::Sub(hn::Min(hn::Min(t.corner[0][2], t.corner[1][2]), t.corner[2][2]), depth_slack);
+        t.behind = hn::Add(max3(t.corner[0][2], t.corner[1][2], t.corner[2][2]), depth_slack);
     }
 
     // Outside of what all rays together may hit: beyond an edge, behind or before.
@@ -211,7 +211,7 @@ private:
         store(hn::Add(t.edge_error, t.edge_error), out.edge_slack);
         store(t.nearest, out.nearest);
         store(t.behind, out.farthest);
-        bound_slopes(t.corner, t.depth_slack, lane, out);
+        bound_slopes(t, lane, out);
     }
 
     // The planes, and the signs that make the sides that are seen the inner ones.
@@ -324,15 +324,15 @@ private:
         return hn::DemoteTo(f, flip);
     }
 
-    HWY_INLINE void bound_slopes(const V (&corner)[3][3], V depth_slack, unsigned lane, FanLeaf& out) const
+    HWY_INLINE void bound_slopes(const Triangles& t, unsigned lane, FanLeaf& out) const
     {
         const D d;
-        const V nearest = hn::Min(hn::Min(corner[0][2], corner[1][2]), corner[2][2]);
+        const V(&corner)[3][3] = t.corner;
         V inverse[3];
         for (std::size_t k = 0; k < 3; ++k)
             inverse[k] = hn::Div(set(1), corner[k][2]);
         // Of what is not clearly beyond the apex: a blur without end.
-        const V blur = hn::IfThenElse(hn::Lt(depth_slack, nearest),
+        const V blur = hn::IfThenElse(hn::Lt(hn::Zero(d), t.nearest),
                                       hn::Mul(set(fan_.blur), max3(inverse[0], inverse[1], inverse[2])),
                                       set(std::numeric_limits<float>::infinity()));
         const auto bound = [&](std::size_t axis, float* least, float* most) HWY_ATTR {

@@ -70,8 +70,8 @@ private:
                     const auto i = static_cast<unsigned>(__builtin_ctz(hits));
                     const unsigned groups =
                         (node.child[i] & ChildCode::kLeaf) != 0 ? sides.groups_entering(node, i) : kAllGroups;
-                    if (groups == 0) {
-                        ++leaves_;
+                    if (groups == 0) { // it counts: among small triangles there may be no others
+                        if (++leaves_ > fan_.most_leaves) return 0;
                         continue;
                     }
                     const Waiting child{node.child[i], entered.entries[i], groups};

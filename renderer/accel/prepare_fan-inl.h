@@ -41,6 +41,17 @@ HWY_INLINE std::size_t main_axis(const Vec3d& size)
     return size.x > size.y ? (size.x > size.z ? 0u : 2u) : (size.y > size.z ? 1u : 2u);
 }
 
+HWY_INLINE Vec3d end_of(const Ray& ray)
+{
+    return ray.origin + ray.direction * ray.t_max;
+}
+
+// A glance, before rays are looked at closely.
+HWY_INLINE bool ends_near(const Ray& ray, const Vec3d& apex)
+{
+    return max_abs(end_of(ray) - apex) < 0x1p-12 * max_abs(ray.origin - apex);
+}
+
 class FanMaker {
 public:
     HWY_INLINE FanMaker(RayFan& fan, const MeshView& mesh, const Ray* rays, unsigned count)
@@ -55,8 +66,8 @@ public:
         const Ray& first = rays_[0];
         const bool outward = first.origin == rays_[1].origin;
         if (mesh_.scale != 1 || mesh_.blocks > kMostBlocks || (!outward && !any_hit)) return false;
-        apex_ = outward ? first.origin : first.origin + first.direction * first.t_max;
-        if (!apex_is_near() || (!outward && !ends_near_apex(rays_[1]))) return false;
+        apex_ = outward ? first.origin : end_of(first);
+        if (!apex_is_near() || (!outward && !ends_near(rays_[1], apex_))) return false;
         name_axes(outward);
         for (std::size_t k = 0; k < 3; ++k)
             shift_[k] = apex_[k];
@@ -70,13 +81,6 @@ private:
         const Vec3d lower = to_double(mesh_.bounds.lower), upper = to_double(mesh_.bounds.upper);
         const double far = std::max(max_abs(lower - apex_), max_abs(upper - apex_));
         return far < 64 * max_abs(upper - lower); // false for a NaN
-    }
-
-    // A glance at another ray, before all are looked at closely.
-    HWY_INLINE bool ends_near_apex(const Ray& ray) const
-    {
-        return max_abs(ray.origin + ray.direction * ray.t_max - apex_) <
-               0x1p-12 * max_abs(ray.origin - apex_);
     }
 
     HWY_INLINE void name_axes(bool outward)

@@ -133,7 +133,7 @@ private:
         std::uint64_t on_face[kFaces] = {};
         for (unsigned i = 0; i < count_; ++i) {
             const Ray& ray = rays_[i];
-            if (!(max_abs(end_of(ray) - apex) < 0x1p-12 * max_abs(ray.origin - apex))) return false;
+            if (!ends_near(ray, apex)) return false;
             const Vec3d size = abs(ray.direction);
             const std::size_t axis = main_axis(size);
             on_face[2 * axis + (ray.direction[axis] < 0 ? 1 : 0)] |= std::uint64_t{1} << i;
@@ -197,8 +197,6 @@ private:
         left_[left_count_] = ray;
         number_of_left_[left_count_++] = number;
     }
-
-    static HWY_INLINE Vec3d end_of(const Ray& ray) { return ray.origin + ray.direction * ray.t_max; }
 
     const MeshView& mesh_;
     const Ray* rays_;

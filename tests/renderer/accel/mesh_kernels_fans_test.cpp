@@ -11,7 +11,22 @@ namespace {
 using namespace renderer;
 using namespace renderer::mesh_rays;
 
-class FansOfEveryMeshKernel : public MeshKernelTest {};
+class FansOfEveryMeshKernel : public MeshKernelTest {
+protected:
+    // Whole ones, and some of fewer rays.
+    void expect_fans_as_brute_force(std::uint64_t seed,
+                                    std::vector<Ray> (*fan)(Random&, const Mesh&, std::size_t count))
+    {
+        Random random(seed);
+        for (const Mesh& mesh : ten_meshes()) {
+            const MeshBvh bvh = build(mesh);
+            for (int i = 0; i < 60 / kThinning; ++i)
+                expect_as_brute_force(
+                    bvh, fan(random, mesh, random.below(4) == 0 ? 2 + random.below(kRun - 1) : kRun));
+        }
+        EXPECT_GT(hits_, rays_ / 5);
+    }
+};
 
 INSTANTIATE_TEST_SUITE_P(All,
                          FansOfEveryMeshKernel,
@@ -93,26 +108,12 @@ std::vector<Ray> light_fan(Random& random, const Mesh& mesh, std::size_t count)
 
 TEST_P(FansOfEveryMeshKernel, FollowsFansOfACameraAsBruteForceWould)
 {
-    Random random(36);
-    for (const Mesh& mesh : ten_meshes()) {
-        const MeshBvh bvh = build(mesh);
-        for (int i = 0; i < 60 / kThinning; ++i)
-            expect_as_brute_force(
-                bvh, camera_fan(random, mesh, random.below(4) == 0 ? 2 + random.below(kRun - 1) : kRun));
-    }
-    EXPECT_GT(hits_, rays_ / 5);
+    expect_fans_as_brute_force(36, camera_fan);
 }
 
 TEST_P(FansOfEveryMeshKernel, FollowsFansToALightAsBruteForceWould)
 {
-    Random random(37);
-    for (const Mesh& mesh : ten_meshes()) {
-        const MeshBvh bvh = build(mesh);
-        for (int i = 0; i < 60 / kThinning; ++i)
-            expect_as_brute_force(
-                bvh, light_fan(random, mesh, random.below(4) == 0 ? 2 + random.below(kRun - 1) : kRun));
-    }
-    EXPECT_GT(hits_, rays_ / 5);
+    expect_fans_as_brute_force(37, light_fan);
 }
 
 // Rays to a light from a few places in turn, so that neighbours have little in common: from one side of the light or
