@@ -133,16 +133,18 @@ build_bvh(PlainArray<BuildItem<T>> items, const BvhOptions& options, ThreadPool&
 
     std::vector<Grown<T>> grown(top.subtrees.size());
     const Grower<T> grower(options, stop, tree.order.data());
-    pool.run(
+    pool.run_near(
         grown.size(),
         [&](std::size_t i, unsigned) {
             const Subtree<T>& tree_at = top.subtrees[i];
-            grown[i].pairs.reserve(tree_at.size() / 3);
-            grown[i].top = grower.grow(buffers[tree_at.buffer].subspan(tree_at.begin, tree_at.size()),
-                                       tree_at.bounds,
-                                       tree_at.begin,
-                                       tree_at.depth,
-                                       grown[i]);
+            Grown<T> here; // where it will lie, its neighbour in the cache line is another thread's
+            here.pairs.reserve(tree_at.size() / 3);
+            here.top = grower.grow(buffers[tree_at.buffer].subspan(tree_at.begin, tree_at.size()),
+                                   tree_at.bounds,
+                                   tree_at.begin,
+                                   tree_at.depth,
+                                   here);
+            grown[i] = std::move(here);
         },
         stop);
     if (stop.stop_requested()) return std::nullopt;

@@ -25,7 +25,7 @@ template <typename T>
 RunBounds<T> bounds_of(std::span<const BuildItem<T>> items, ThreadPool& pool)
 {
     std::vector<RunBounds<T>> parts((items.size() + kShare - 1) / kShare);
-    pool.run(parts.size(), [&](std::size_t i, unsigned) {
+    pool.run_near(parts.size(), [&](std::size_t i, unsigned) {
         RunBounds<T> bounds;
         for (const BuildItem<T>& item :
              items.subspan(i * kShare, std::min(kShare, items.size() - i * kShare)))
@@ -73,10 +73,10 @@ public:
                                            to + share.lefts_before,
                                            to + run.sides.left + share.rights_before);
         };
-        pool.run(shares_.size(), count, stop);
+        pool.run_near(shares_.size(), count, stop);
         if (stop.stop_requested()) return;
         choose();
-        pool.run(shares_.size(), move, stop);
+        pool.run_near(shares_.size(), move, stop);
         for (const Share& share : shares_)
             if (cuts_[share.run].cut)
                 for (std::size_t side = 0; side < 2; ++side)

@@ -87,9 +87,9 @@ struct Cut {
 };
 
 // A run counted in slices of equal width along each axis, to choose a cut from; what is counted in parts can be
-// merged.
+// merged. Those of neighbouring parts, each another thread's, share no cache line.
 template <typename T>
-struct Bins {
+struct alignas(128) Bins {
     static constexpr std::size_t kMost = 16;
     struct Box {
         Lanes4<T> lower, upper;

@@ -60,7 +60,7 @@ TriangleItems triangle_items(const Mesh& mesh, TriangleRun run, ThreadPool& pool
     const auto take_share = mesh.residuals.empty() ? take : take_with_residuals;
     std::vector<Share> shares((run.count + kShare - 1) / kShare);
     const auto first_of = [&](std::size_t i) { return static_cast<std::uint32_t>(i) * kShare; };
-    pool.run(
+    pool.run_near(
         shares.size(),
         [&](std::size_t i, unsigned) {
             const std::uint32_t first = first_of(i), end = std::min(run.count, first + kShare);

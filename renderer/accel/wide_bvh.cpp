@@ -46,9 +46,10 @@ public:
         const auto inside = static_cast<std::uint32_t>(first_.nodes.size());
         std::vector<Piece> pieces(open_.size() - inside);
         pool_.run(pieces.size(), [&](std::size_t i, unsigned) {
-            Piece& piece = pieces[i];
+            Piece piece; // where it will lie, its neighbour in the cache line is another thread's
             add_node(piece, open_[inside + i].node);
             choose_below(piece, 0, open_[inside + i].depth);
+            pieces[i] = std::move(piece);
         });
 
         // The first nodes, then the roots of the pieces, then what is below each of those.

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <pthread.h>
 #include <sched.h>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace renderer {
@@ -23,8 +25,31 @@ unsigned usable_cores()
     return std::max(1u, std::thread::hardware_concurrency());
 }
 
-// One loop at a time: threads sleep until `generation` moves, claim items from `next`, and report back in
-// `busy`.
+namespace {
+
+// For so long a thread that waits stays awake: longer than most of what a caller does between loops that belong
+// together.
+constexpr std::chrono::microseconds kAwake{500};
+
+// Until it is no longer `old`. `on_sleep` is called before the thread gives up its processor.
+template <typename OnSleep>
+void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old, OnSleep&& on_sleep)
+{
+    const auto awake_until = std::chrono::steady_clock::now() + kAwake;
+    while (value.load(std::memory_order_acquire) == old) {
+        if (std::chrono::steady_clock::now() > awake_until) {
+            on_sleep();
+            value.wait(old, std::memory_order_acquire);
+            return;
+        }
+        std::this_thread::yield(); // to whoever shares the processor
+    }
+}
+
+} // namespace
+
+// One loop at a time: threads wait until `loops` moves, enter if they still find it open, claim items from `next`,
+// and leave.
 struct ThreadPool::State {
     struct Loop {
         std::size_t items = 0;
@@ -32,19 +57,48 @@ struct ThreadPool::State {
         std::stop_token stop;
         unsigned max_workers = 0;
         std::atomic<std::size_t> next{0};
+        std::mutex mutex;
         std::exception_ptr error; // the first one; under `mutex`
     };
 
-    std::mutex callers; // one run() at a time
-    std::mutex mutex;
-    std::condition_variable wake, done;
-    std::uint64_t generation = 0;
-    unsigned busy = 0;
-    bool closing = false;
-    Loop* loop = nullptr;
+    // A thread that sleeps, or has not begun yet, is woken on another processor than its waker's. Linux means to
+    // do that itself, but as a guest of KVM it often puts both on one, though another is idle, until a tick of the
+    // clock, 4 ms later or more, parts them.
+    struct Sleep {
+        std::atomic<bool> asleep{true};
+        bool kept_apart = false;
+        cpu_set_t usable{}; // to the thread, once it is awake
+
+        // A refusal changes nothing but the time that the loop takes.
+        void keep_from(int processor, pthread_t thread)
+        {
+            if (!asleep.exchange(false, std::memory_order_acquire)) return;
+            if (pthread_getaffinity_np(thread, sizeof usable, &usable) != 0) return;
+            cpu_set_t others = usable;
+            CPU_CLR(static_cast<unsigned>(processor), &others);
+            kept_apart =
+                CPU_COUNT(&others) > 0 && pthread_setaffinity_np(thread, sizeof others, &others) == 0;
+        }
+        void awake()
+        {
+            asleep.store(false, std::memory_order_relaxed);
+            if (std::exchange(kept_apart, false)) sched_setaffinity(0, sizeof usable, &usable);
+        }
+    };
+
+    static constexpr std::uint32_t kOpen = std::uint32_t{1} << 31;
+
+    explicit State(unsigned count) : sleeps(count) {}
+
+    std::mutex callers;                   // one run() at a time
+    std::atomic<std::uint32_t> loops{0};  // that were opened; moves once more at the end
+    std::atomic<std::uint32_t> inside{0}; // threads in the loop; kOpen while more may enter
+    std::atomic<bool> closing{false};
+    Loop* loop = nullptr;      // of those inside
+    std::vector<Sleep> sleeps; // of each thread
     std::vector<std::jthread> threads;
 
-    void work_on(Loop& l, unsigned worker)
+    static void work_on(Loop& l, unsigned worker)
     {
         try {
             while (!l.stop.stop_requested()) {
@@ -54,45 +108,79 @@ struct ThreadPool::State {
             }
         } catch (...) {
             l.next.store(l.items, std::memory_order_relaxed);
-            const std::lock_guard lock(mutex);
+            const std::lock_guard lock(l.mutex);
             if (!l.error) l.error = std::current_exception();
         }
+    }
+
+    bool enter()
+    {
+        std::uint32_t now = inside.load(std::memory_order_relaxed);
+        while ((now & kOpen) != 0)
+            if (inside.compare_exchange_weak(now, now + 1, std::memory_order_acquire)) return true;
+        return false;
+    }
+
+    void leave()
+    {
+        if (inside.fetch_sub(1, std::memory_order_acq_rel) == 1) inside.notify_one();
     }
 
     void thread_main(unsigned worker)
     {
         const DefaultFloatingPoint whatever_the_maker_had;
-        std::uint64_t seen = 0;
-        std::unique_lock lock(mutex);
+        Sleep& sleep = sleeps[worker - 1];
+        std::uint32_t seen = 0;
+        loops.wait(seen, std::memory_order_acquire);
         for (;;) {
-            wake.wait(lock, [&] { return closing || generation != seen; });
-            if (closing) return;
-            seen = generation;
-            Loop* const l = loop;
-            if (l == nullptr || worker >= l->max_workers) continue;
-            ++busy;
-            lock.unlock();
-            work_on(*l, worker);
-            lock.lock();
-            if (--busy == 0) done.notify_all();
+            sleep.awake();
+            seen = loops.load(std::memory_order_acquire);
+            if (closing.load(std::memory_order_relaxed)) return;
+            if (enter()) {
+                if (worker < loop->max_workers) work_on(*loop, worker);
+                leave();
+            }
+            wait_for_change(loops, seen, [&] { sleep.asleep.store(true, std::memory_order_release); });
         }
+    }
+
+    void open(Loop& l)
+    {
+        loop = &l;
+        inside.store(kOpen, std::memory_order_release);
+        const int here = sched_getcpu();
+        for (std::size_t i = 0; i < std::min<std::size_t>(l.max_workers, l.items) - 1; ++i)
+            sleeps[i].keep_from(here, threads[i].native_handle());
+        next_loop();
+    }
+
+    void next_loop()
+    {
+        loops.fetch_add(1, std::memory_order_release);
+        loops.notify_all();
+    }
+
+    // A thread that comes late finds nothing to enter.
+    void close()
+    {
+        std::uint32_t left = inside.fetch_and(~kOpen, std::memory_order_acq_rel) & ~kOpen;
+        for (; left != 0; left = inside.load(std::memory_order_acquire))
+            wait_for_change(inside, left, [] {});
     }
 };
 
-ThreadPool::ThreadPool(unsigned threads) : state_(std::make_unique<State>())
+ThreadPool::ThreadPool(unsigned threads)
 {
     const unsigned count = threads != 0 ? threads : usable_cores();
+    state_ = std::make_unique<State>(count - 1);
     for (unsigned worker = 1; worker < count; ++worker)
         state_->threads.emplace_back([state = state_.get(), worker] { state->thread_main(worker); });
 }
 
 ThreadPool::~ThreadPool()
 {
-    {
-        const std::lock_guard lock(state_->mutex);
-        state_->closing = true;
-    }
-    state_->wake.notify_all();
+    state_->closing.store(true, std::memory_order_relaxed);
+    state_->next_loop();
     state_->threads.clear();
 }
 
@@ -113,19 +201,43 @@ void ThreadPool::run(std::size_t items,
     loop.body = &body;
     loop.stop = std::move(stop);
     loop.max_workers = max_workers == 0 ? size() : std::min(max_workers, size());
-    if (loop.max_workers > 1 && items > 1) {
-        {
-            const std::lock_guard lock(state_->mutex);
-            state_->loop = &loop;
-            ++state_->generation;
-        }
-        state_->wake.notify_all();
-    }
-    state_->work_on(loop, 0);
-    std::unique_lock lock(state_->mutex);
-    state_->loop = nullptr; // a thread that wakes late finds nothing to join
-    state_->done.wait(lock, [&] { return state_->busy == 0; });
+    const bool shared = loop.max_workers > 1 && items > 1;
+    if (shared) state_->open(loop);
+    State::work_on(loop, 0);
+    if (shared) state_->close();
     if (loop.error) std::rethrow_exception(loop.error);
+}
+
+void ThreadPool::run_near(std::size_t items,
+                          const std::function<void(std::size_t, unsigned)>& body,
+                          std::stop_token stop)
+{
+    struct alignas(128) Part {
+        std::atomic<std::size_t> next;
+        std::size_t end;
+    };
+    std::vector<Part> parts(size());
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        parts[p].next = items * p / parts.size();
+        parts[p].end = items * (p + 1) / parts.size();
+    }
+    const auto work_on = [&](Part& part, unsigned worker) {
+        while (!stop.stop_requested()) {
+            const std::size_t item = part.next.fetch_add(1, std::memory_order_relaxed);
+            if (item >= part.end) return;
+            body(item, worker);
+        }
+    };
+    run(parts.size(), [&](std::size_t, unsigned worker) {
+        try {
+            for (std::size_t k = 0; k < parts.size(); ++k)
+                work_on(parts[(worker + k) % parts.size()], worker);
+        } catch (...) {
+            for (Part& part : parts)
+                part.next.store(part.end, std::memory_order_relaxed);
+            throw;
+        }
+    });
 }
 
 } // namespace renderer

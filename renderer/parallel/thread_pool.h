@@ -4,7 +4,9 @@
 //          caller works along, so a pool of n has n-1 threads of its own. The body is called concurrently.
 // Numbers  bodies run in the default floating-point environment, also in a caller that has set another.
 // Errors   an exception from the body stops the loop and is thrown again by run().
-// Cost     one atomic increment an item: items should take microseconds, not nanoseconds.
+// Cost     one atomic increment an item: items should take microseconds, not nanoseconds. After a loop the threads
+//          stay awake for half a millisecond, giving way to whoever wants their processor, then sleep; those that
+//          sleep are woken on another processor than the caller's.
 #pragma once
 
 #include <cstddef>
@@ -32,6 +34,13 @@ public:
              const std::function<void(std::size_t item, unsigned worker)>& body,
              std::stop_token stop = {},
              unsigned max_workers = 0);
+
+    // As run() with all threads, but each begins with a part of the items that is its own, the same in every loop
+    // of so many items, and then helps the others: for loops that follow each other over the same data, most of
+    // which then is in the caches of the processor that needs it.
+    void run_near(std::size_t items,
+                  const std::function<void(std::size_t item, unsigned worker)>& body,
+                  std::stop_token stop = {});
 
 private:
     struct State;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <sched.h>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -94,4 +96,81 @@ TEST(ThreadPool, RunsNothingForNoItems)
 {
     ThreadPool pool(2);
     pool.run(0, [](std::size_t, unsigned) { FAIL(); });
+}
+
+TEST(ThreadPool, WakesThreadsThatHaveFallenAsleepAndLeavesThemEveryProcessor)
+{
+    cpu_set_t usable;
+    ASSERT_EQ(sched_getaffinity(0, sizeof usable, &usable), 0);
+    ThreadPool pool(4);
+    for (int loop = 0; loop < 20; ++loop) {
+        std::atomic<unsigned> inside{0}, bound{0};
+        pool.run(4, [&](std::size_t, unsigned) {
+            inside.fetch_add(1);
+            while (inside.load() < 4) // all four of them
+                std::this_thread::yield();
+            cpu_set_t mine;
+            if (sched_getaffinity(0, sizeof mine, &mine) != 0 || !CPU_EQUAL(&mine, &usable))
+                bound.fetch_add(1);
+        });
+        ASSERT_EQ(bound.load(), 0u) << loop;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+}
+
+TEST(ThreadPool, RunsEveryItemOfItsPartsExactlyOnce)
+{
+    for (unsigned threads = 1; threads <= 8; ++threads) {
+        ThreadPool pool(threads);
+        for (const std::size_t items : {0u, 1u, 3u, 7u, 1000u}) {
+            std::vector<std::atomic<int>> seen(items);
+            pool.run_near(items, [&](std::size_t item, unsigned worker) {
+                EXPECT_LT(worker, threads);
+                seen[item].fetch_add(1);
+            });
+            for (const std::atomic<int>& count : seen)
+                ASSERT_EQ(count.load(), 1);
+        }
+    }
+}
+
+TEST(ThreadPool, GivesEachWorkerTheSamePartInEveryLoop)
+{
+    ThreadPool pool(2);
+    for (int loop = 0; loop < 10; ++loop) {
+        std::atomic<unsigned> begun{0};
+        std::size_t first[2] = {};
+        pool.run_near(100, [&](std::size_t item, unsigned worker) {
+            if (first[worker] != 0) return;
+            first[worker] = item + 1;
+            begun.fetch_add(1);
+            while (begun.load() < 2)
+                std::this_thread::yield();
+        });
+        EXPECT_EQ(first[0], 1u);
+        EXPECT_EQ(first[1], 51u);
+    }
+}
+
+TEST(ThreadPool, StopsLoopsOverPartsAsItStopsOthers)
+{
+    ThreadPool pool(4);
+    std::stop_source stop;
+    std::atomic<int> ran{0};
+    pool.run_near(
+        1'000'000,
+        [&](std::size_t, unsigned) {
+            if (ran.fetch_add(1) == 10) stop.request_stop();
+        },
+        stop.get_token());
+    EXPECT_GE(ran.load(), 11);
+    EXPECT_LT(ran.load(), 1'000'000);
+    EXPECT_THROW(pool.run_near(1000,
+                               [](std::size_t item, unsigned) {
+                                   if (item == 500) throw std::runtime_error("item");
+                               }),
+                 std::runtime_error);
+    ran = 0;
+    pool.run_near(1000, [&](std::size_t, unsigned) { ran.fetch_add(1); });
+    EXPECT_EQ(ran.load(), 1000);
 }
