@@ -81,7 +81,7 @@ public:
           bytes_a_pixel_(sizeof(RgbSum) + layer_sum_bytes(plan.layers)),
           grid_(film_.region,
                 tile_side(settings.acceleration.tile_px,
-                          kMergeBytes / bytes_a_pixel_ / (kUnitsAThread * pool.size()))),
+                          kMergeBytes / bytes_a_pixel_ / kUnitsAThread / pool.size())),
           target_(target_of(settings.quality)), teller_(progress, target_, settings.quality.time_s, start_)
     {
     }
@@ -173,8 +173,8 @@ private:
     std::size_t window() const
     {
         const std::size_t bytes = grid_.largest_tile_pixels() * bytes_a_pixel_;
-        return std::max<std::size_t>(kUnitsAThread * pool_.size(),
-                                     std::min(kMergeBytes / bytes, std::size_t{4096}));
+        return std::max(std::size_t{kUnitsAThread} * pool_.size(),
+                        std::min(kMergeBytes / bytes, std::size_t{4096}));
     }
 
     RenderReport report(StopReason reason) const

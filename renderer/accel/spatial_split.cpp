@@ -146,7 +146,8 @@ std::optional<PlaneCut> best_plane(std::span<const TriangleItem> run,
                                    double limit)
 {
     const auto tests = [block](std::size_t items) {
-        return static_cast<double>((items + block - 1) / block);
+        const std::size_t blocks = (items + block - 1) / block;
+        return static_cast<double>(blocks);
     };
     std::optional<PlaneCut> best;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -185,7 +186,8 @@ bool cut_by_plane(ItemRun& run,
                   std::size_t most,
                   Sides<float>& sides)
 {
-    const auto [axis, plane] = cut;
+    const unsigned axis = cut.axis;
+    const float plane = cut.plane;
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const auto is_left = [&](const TriangleItem& item) { return item.upper[axis] <= plane; };
     const auto is_right = [&](const TriangleItem& item) { return plane <= item.lower[axis]; };

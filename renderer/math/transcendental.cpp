@@ -75,13 +75,13 @@ std::pair<double, double> sin_cos_deg(double degrees)
 
 std::pair<double, double> sin_cos(double radians)
 {
-    constexpr const auto& kParts = transcendental::kQuarterTurn;
+    constexpr const auto& parts = transcendental::kQuarterTurn;
     const double shifted = radians * (2 / kPi) + kShift, quarters = shifted - kShift;
-    const double first = radians - quarters * kParts[0];
-    const double second = quarters * kParts[1];
+    const double first = radians - quarters * parts[0];
+    const double second = quarters * parts[1];
     const double y = first - second;
     const double lost = (first - y) - second;
-    const double tail = lost - quarters * kParts[2];
+    const double tail = lost - quarters * parts[2];
     const double x = y + tail;
     return turned(x, (y - x) + tail, static_cast<int>(std::bit_cast<std::uint64_t>(shifted) & 3));
 }

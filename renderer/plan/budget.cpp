@@ -164,7 +164,8 @@ std::vector<bool> are_on_surfaces(const SceneDescription& scene, std::size_t ima
 std::uint64_t merge_bytes(const AccelerationSettings& settings)
 {
     const std::uint64_t side = settings.tile_px;
-    return std::min(kMergeBytes, threads_of(settings) * kUnitsAThread * side * side * kSumBytes);
+    return std::min(kMergeBytes,
+                    std::uint64_t{threads_of(settings)} * kUnitsAThread * side * side * kSumBytes);
 }
 
 } // namespace

@@ -16,14 +16,13 @@ GridResolution resolution_of(SkyPrecision precision)
             .points = 10};
 }
 
-Sky::Sky(const AtmosphereDescription& description, ThreadPool& pool, std::stop_token stop)
+Sky::Sky(const AtmosphereDescription& description, ThreadPool& pool, const std::stop_token& stop)
     : air_(make_air(description)),
       precision_(description.mode == SkyMode::fast ? SkyPrecision::quick : SkyPrecision::exact),
       columns_(std::make_unique<ColumnTable>(air_, pool))
 {
     if (description.scattering == SkyScattering::multiple)
-        scattered_ = std::make_unique<ScatteredLight>(
-            air_, *columns_, resolution_of(precision_), pool, std::move(stop));
+        scattered_ = std::make_unique<ScatteredLight>(air_, *columns_, resolution_of(precision_), pool, stop);
 }
 
 SkyRadiance Sky::radiance(const SkyGeometry& geometry) const

@@ -28,7 +28,7 @@ struct SkyRadiance {
 class Sky {
 public:
     // The description has no faults (check_atmosphere). Its mode `auto` is exact.
-    Sky(const AtmosphereDescription& description, ThreadPool& pool, std::stop_token stop = {});
+    Sky(const AtmosphereDescription& description, ThreadPool& pool, const std::stop_token& stop = {});
 
     [[nodiscard]] const Air& air() const { return air_; }
     [[nodiscard]] SkyPrecision precision() const { return precision_; }
