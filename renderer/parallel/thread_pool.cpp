@@ -29,13 +29,13 @@ namespace {
 
 // For so long a thread that waits stays awake: longer than most of what a caller does between loops that belong
 // together.
-constexpr std::chrono::microseconds kAwake{500};
+constexpr std::chrono::microseconds kPatience{500};
 
 // Until it is no longer `old`. `on_sleep` is called before the thread gives up its processor.
 template <typename OnSleep>
 void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old, OnSleep&& on_sleep)
 {
-    const auto awake_until = std::chrono::steady_clock::now() + kAwake;
+    const auto awake_until = std::chrono::steady_clock::now() + kPatience;
     while (value.load(std::memory_order_acquire) == old) {
         if (std::chrono::steady_clock::now() > awake_until) {
             on_sleep();
@@ -64,39 +64,59 @@ struct ThreadPool::State {
     // A thread that sleeps, or has not begun yet, is woken on another processor than its waker's. Linux means to
     // do that itself, but as a guest of KVM it often puts both on one, though another is idle, until a tick of the
     // clock, 4 ms later or more, parts them.
-    struct Sleep {
-        std::atomic<bool> asleep{true};
-        bool kept_apart = false;
-        cpu_set_t usable{}; // to the thread, once it is awake
-
-        // A refusal changes nothing but the time that the loop takes.
+    class Sleep {
+    public:
+        // The waker's. A refusal changes nothing but the time that the loop takes.
         void keep_from(int processor, pthread_t thread)
         {
-            if (!asleep.exchange(false, std::memory_order_acquire)) return;
-            if (pthread_getaffinity_np(thread, sizeof usable, &usable) != 0) return;
-            cpu_set_t others = usable;
-            CPU_CLR(static_cast<unsigned>(processor), &others);
-            kept_apart =
-                CPU_COUNT(&others) > 0 && pthread_setaffinity_np(thread, sizeof others, &others) == 0;
+            int expected = kAsleep;
+            if (!state_.compare_exchange_strong(expected, kBeingKept, std::memory_order_acquire)) return;
+            bool kept = false;
+            if (pthread_getaffinity_np(thread, sizeof usable_, &usable_) == 0) {
+                cpu_set_t others = usable_;
+                CPU_CLR(static_cast<unsigned>(processor), &others);
+                kept = CPU_COUNT(&others) > 0 && pthread_setaffinity_np(thread, sizeof others, &others) == 0;
+            }
+            state_.store(kept ? kKept : kAwake, std::memory_order_release);
         }
-        void awake()
+
+        // The thread's own.
+        void begin() { state_.store(kAsleep, std::memory_order_release); }
+        void end()
         {
-            asleep.store(false, std::memory_order_relaxed);
-            if (std::exchange(kept_apart, false)) sched_setaffinity(0, sizeof usable, &usable);
+            int now = state_.load(std::memory_order_acquire);
+            while (now == kBeingKept || (now == kAsleep && !state_.compare_exchange_weak(
+                                                               now, kAwake, std::memory_order_acquire))) {
+                std::this_thread::yield();
+                now = state_.load(std::memory_order_acquire);
+            }
+            if (now != kKept) return;
+            sched_setaffinity(0, sizeof usable_, &usable_);
+            state_.store(kAwake, std::memory_order_relaxed);
         }
+
+    private:
+        enum : int { kAwake, kAsleep, kBeingKept, kKept };
+        std::atomic<int> state_{kAsleep};
+        cpu_set_t usable_{}; // to the thread, once it is awake
     };
 
     static constexpr std::uint32_t kOpen = std::uint32_t{1} << 31;
 
     explicit State(unsigned count) : sleeps(count) {}
+    ~State() // also where not all threads could be made
+    {
+        closing.store(true, std::memory_order_relaxed);
+        next_loop();
+    }
 
     std::mutex callers;                   // one run() at a time
     std::atomic<std::uint32_t> loops{0};  // that were opened; moves once more at the end
     std::atomic<std::uint32_t> inside{0}; // threads in the loop; kOpen while more may enter
     std::atomic<bool> closing{false};
-    Loop* loop = nullptr;      // of those inside
-    std::vector<Sleep> sleeps; // of each thread
-    std::vector<std::jthread> threads;
+    Loop* loop = nullptr;              // of those inside
+    std::vector<Sleep> sleeps;         // of each thread
+    std::vector<std::jthread> threads; // the last member: they use the others
 
     static void work_on(Loop& l, unsigned worker)
     {
@@ -133,14 +153,14 @@ struct ThreadPool::State {
         std::uint32_t seen = 0;
         loops.wait(seen, std::memory_order_acquire);
         for (;;) {
-            sleep.awake();
+            sleep.end();
             seen = loops.load(std::memory_order_acquire);
             if (closing.load(std::memory_order_relaxed)) return;
             if (enter()) {
                 if (worker < loop->max_workers) work_on(*loop, worker);
                 leave();
             }
-            wait_for_change(loops, seen, [&] { sleep.asleep.store(true, std::memory_order_release); });
+            wait_for_change(loops, seen, [&] { sleep.begin(); });
         }
     }
 
@@ -177,12 +197,7 @@ ThreadPool::ThreadPool(unsigned threads)
         state_->threads.emplace_back([state = state_.get(), worker] { state->thread_main(worker); });
 }
 
-ThreadPool::~ThreadPool()
-{
-    state_->closing.store(true, std::memory_order_relaxed);
-    state_->next_loop();
-    state_->threads.clear();
-}
+ThreadPool::~ThreadPool() = default;
 
 unsigned ThreadPool::size() const
 {

@@ -118,6 +118,29 @@ TEST(ThreadPool, WakesThreadsThatHaveFallenAsleepAndLeavesThemEveryProcessor)
     }
 }
 
+// Loops that begin about when the threads fall asleep.
+TEST(ThreadPool, LeavesThreadsEveryProcessorWhereverInFallingAsleepALoopFindsThem)
+{
+    using std::chrono::steady_clock;
+    cpu_set_t usable;
+    ASSERT_EQ(sched_getaffinity(0, sizeof usable, &usable), 0);
+    ThreadPool pool(3);
+    for (int loop = 0; loop < 600; ++loop) {
+        std::atomic<unsigned> bound{0}, ran{0};
+        pool.run(30, [&](std::size_t, unsigned) {
+            cpu_set_t mine;
+            if (sched_getaffinity(0, sizeof mine, &mine) != 0 || !CPU_EQUAL(&mine, &usable))
+                bound.fetch_add(1);
+            ran.fetch_add(1);
+        });
+        ASSERT_EQ(ran.load(), 30u);
+        ASSERT_EQ(bound.load(), 0u) << loop;
+        const auto next = steady_clock::now() + std::chrono::microseconds(480 + loop % 60);
+        while (steady_clock::now() < next)
+            std::this_thread::yield();
+    }
+}
+
 TEST(ThreadPool, RunsEveryItemOfItsPartsExactlyOnce)
 {
     for (unsigned threads = 1; threads <= 8; ++threads) {
