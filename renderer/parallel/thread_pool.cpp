@@ -31,7 +31,7 @@ namespace {
 // together.
 constexpr std::chrono::microseconds kPatience{500};
 
-// Until it is no longer `old`. `on_sleep` is called before the thread gives up its processor.
+// Until it is no longer `old`. `on_sleep` is called before the thread sleeps.
 template <typename OnSleep>
 void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old, OnSleep&& on_sleep)
 {
@@ -63,7 +63,7 @@ struct ThreadPool::State {
 
     // A thread that sleeps, or has not begun yet, is woken on another processor than its waker's. Linux means to
     // do that itself, but as a guest of KVM it often puts both on one, though another is idle, until a tick of the
-    // clock, 4 ms later or more, parts them.
+    // clock, 4 ms later or more, parts them. Awake it may run on what was usable when it was woken.
     class Sleep {
     public:
         // The waker's. A refusal changes nothing but the time that the loop takes.

@@ -1,12 +1,12 @@
 // ThreadPool: a fixed set of std::jthread that run one parallel loop at a time.
 //
-// Threads  run() may be called from any one thread at a time per pool (callers queue behind one another); the
-//          caller works along, so a pool of n has n-1 threads of its own. The body is called concurrently.
+// Threads  run() may be called from any thread, but not from a body of the same pool; callers queue behind one
+//          another. The caller works along, so a pool of n has n-1 threads of its own. The body is called concurrently.
 // Numbers  bodies run in the default floating-point environment, also in a caller that has set another.
 // Errors   an exception from the body stops the loop and is thrown again by run().
 // Cost     one atomic increment an item: items should take microseconds, not nanoseconds. After a loop the threads
 //          stay awake for half a millisecond, giving way to whoever wants their processor, then sleep; those that
-//          sleep are woken on another processor than the caller's.
+//          sleep are woken, as many as there are items for, on other processors than the caller's where there are any.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ public:
     unsigned size() const;
 
     // Calls body(item, worker) for every item in [0, items), in order of claim, worker in [0, workers used).
-    // At most `max_workers` threads take part (0: all). Once `stop` is requested no further item is started.
+    // At most `max_workers` threads take part (0: all). Once `stop` is requested nobody claims another item.
     void run(std::size_t items,
              const std::function<void(std::size_t item, unsigned worker)>& body,
              std::stop_token stop = {},

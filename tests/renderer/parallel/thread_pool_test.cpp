@@ -98,22 +98,31 @@ TEST(ThreadPool, RunsNothingForNoItems)
     pool.run(0, [](std::size_t, unsigned) { FAIL(); });
 }
 
+namespace {
+
+// How many of a loop's threads, all of the pool's, may not run on every processor of `usable`.
+unsigned bound_threads(ThreadPool& pool, const cpu_set_t& usable)
+{
+    std::atomic<unsigned> inside{0}, bound{0};
+    pool.run(pool.size(), [&](std::size_t, unsigned) {
+        inside.fetch_add(1);
+        while (inside.load() < pool.size())
+            std::this_thread::yield();
+        cpu_set_t mine;
+        if (sched_getaffinity(0, sizeof mine, &mine) != 0 || !CPU_EQUAL(&mine, &usable)) bound.fetch_add(1);
+    });
+    return bound.load();
+}
+
+} // namespace
+
 TEST(ThreadPool, WakesThreadsThatHaveFallenAsleepAndLeavesThemEveryProcessor)
 {
     cpu_set_t usable;
     ASSERT_EQ(sched_getaffinity(0, sizeof usable, &usable), 0);
     ThreadPool pool(4);
     for (int loop = 0; loop < 20; ++loop) {
-        std::atomic<unsigned> inside{0}, bound{0};
-        pool.run(4, [&](std::size_t, unsigned) {
-            inside.fetch_add(1);
-            while (inside.load() < 4) // all four of them
-                std::this_thread::yield();
-            cpu_set_t mine;
-            if (sched_getaffinity(0, sizeof mine, &mine) != 0 || !CPU_EQUAL(&mine, &usable))
-                bound.fetch_add(1);
-        });
-        ASSERT_EQ(bound.load(), 0u) << loop;
+        ASSERT_EQ(bound_threads(pool, usable), 0u) << loop;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
 }
@@ -125,16 +134,8 @@ TEST(ThreadPool, LeavesThreadsEveryProcessorWhereverInFallingAsleepALoopFindsThe
     cpu_set_t usable;
     ASSERT_EQ(sched_getaffinity(0, sizeof usable, &usable), 0);
     ThreadPool pool(3);
-    for (int loop = 0; loop < 600; ++loop) {
-        std::atomic<unsigned> bound{0}, ran{0};
-        pool.run(30, [&](std::size_t, unsigned) {
-            cpu_set_t mine;
-            if (sched_getaffinity(0, sizeof mine, &mine) != 0 || !CPU_EQUAL(&mine, &usable))
-                bound.fetch_add(1);
-            ran.fetch_add(1);
-        });
-        ASSERT_EQ(ran.load(), 30u);
-        ASSERT_EQ(bound.load(), 0u) << loop;
+    for (int loop = 0; loop < 300; ++loop) {
+        ASSERT_EQ(bound_threads(pool, usable), 0u) << loop;
         const auto next = steady_clock::now() + std::chrono::microseconds(480 + loop % 60);
         while (steady_clock::now() < next)
             std::this_thread::yield();
