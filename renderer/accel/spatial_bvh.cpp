@@ -281,9 +281,11 @@ std::optional<Bvh<float>> build_spatial_bvh(const Mesh& mesh,
         grown.size(),
         [&](std::size_t i, unsigned) {
             const Open& subtree = crown.subtrees[i];
-            grown[i].pairs.reserve(subtree.items.size() / 3);
-            grown[i].order.reserve(subtree.items.size() + subtree.run.spare);
-            grown[i].top = Grower(splitter, subtree.items, stop, grown[i]).grow(0, subtree.run);
+            Grown here; // where it will lie, its neighbour in the cache line is another thread's
+            here.pairs.reserve(subtree.items.size() / 3);
+            here.order.reserve(subtree.items.size() + subtree.run.spare);
+            here.top = Grower(splitter, subtree.items, stop, here).grow(0, subtree.run);
+            grown[i] = std::move(here);
         },
         stop);
     if (stop.stop_requested()) return std::nullopt;

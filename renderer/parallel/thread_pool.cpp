@@ -69,35 +69,37 @@ struct ThreadPool::State {
         // The waker's. A refusal changes nothing but the time that the loop takes.
         void keep_from(int processor, pthread_t thread)
         {
-            int expected = kAsleep;
-            if (!state_.compare_exchange_strong(expected, kBeingKept, std::memory_order_acquire)) return;
+            Phase expected = Phase::asleep;
+            if (!phase_.compare_exchange_strong(expected, Phase::being_kept, std::memory_order_acquire))
+                return;
             bool kept = false;
             if (pthread_getaffinity_np(thread, sizeof usable_, &usable_) == 0) {
                 cpu_set_t others = usable_;
                 CPU_CLR(static_cast<unsigned>(processor), &others);
                 kept = CPU_COUNT(&others) > 0 && pthread_setaffinity_np(thread, sizeof others, &others) == 0;
             }
-            state_.store(kept ? kKept : kAwake, std::memory_order_release);
+            phase_.store(kept ? Phase::kept : Phase::awake, std::memory_order_release);
         }
 
         // The thread's own.
-        void begin() { state_.store(kAsleep, std::memory_order_release); }
+        void begin() { phase_.store(Phase::asleep, std::memory_order_release); }
         void end()
         {
-            int now = state_.load(std::memory_order_acquire);
-            while (now == kBeingKept || (now == kAsleep && !state_.compare_exchange_weak(
-                                                               now, kAwake, std::memory_order_acquire))) {
+            Phase now = phase_.load(std::memory_order_acquire);
+            while (now == Phase::being_kept ||
+                   (now == Phase::asleep &&
+                    !phase_.compare_exchange_weak(now, Phase::awake, std::memory_order_acquire))) {
                 std::this_thread::yield();
-                now = state_.load(std::memory_order_acquire);
+                now = phase_.load(std::memory_order_acquire);
             }
-            if (now != kKept) return;
+            if (now != Phase::kept) return;
             sched_setaffinity(0, sizeof usable_, &usable_);
-            state_.store(kAwake, std::memory_order_relaxed);
+            phase_.store(Phase::awake, std::memory_order_relaxed);
         }
 
     private:
-        enum : int { kAwake, kAsleep, kBeingKept, kKept };
-        std::atomic<int> state_{kAsleep};
+        enum class Phase { awake, asleep, being_kept, kept };
+        std::atomic<Phase> phase_{Phase::asleep};
         cpu_set_t usable_{}; // to the thread, once it is awake
     };
 
