@@ -19,6 +19,19 @@ const char* name_of(renderer::StopReason reason)
     return "samples";
 }
 
+const char* name_of(renderer::UpperLevel level)
+{
+    switch (level) {
+    case renderer::UpperLevel::none:
+        return "none";
+    case renderer::UpperLevel::built:
+        return "built";
+    case renderer::UpperLevel::refitted:
+        return "refitted";
+    }
+    return "none";
+}
+
 Json choices(const std::vector<renderer::ModelChoice>& models)
 {
     Json json = Json::array();
@@ -92,7 +105,8 @@ std::string write_report(const renderer::RenderReport& report,
         {"geometry",
          {{"triangles", geometry.triangles},
           {"instances", geometry.instances},
-          {"bvh_bytes", geometry.bvh_bytes}}},
+          {"bvh_bytes", geometry.bvh_bytes},
+          {"upper_level", name_of(geometry.upper_level)}}},
         {"notes", report.notes}};
     if (report.sky) json["sky"] = {{"table_error", report.sky->table_error}};
     if (report.meter) json["meter"] = meter_json(*report.meter);

@@ -7,6 +7,13 @@
 
 namespace renderer {
 
+namespace {
+
+// Building the tree takes as long for each instance as visiting so many inner nodes: 0.9 us, and 15 to 20 ns.
+constexpr double kVisitsToBuildOne = 50;
+
+} // namespace
+
 struct InstanceTree::Best {
     bool found = false;
     std::uint32_t asked = 0;
@@ -49,7 +56,8 @@ Bounds3d InstanceTree::box_to_meet(std::uint32_t number) const
 InstanceTree::InstanceTree(std::vector<Instance> instances,
                            BvhSplit split,
                            ThreadPool& pool,
-                           std::optional<JoinedMesh> joined)
+                           std::optional<JoinedMesh> joined,
+                           const EarlierFrames& earlier)
     : InstanceTree(std::move(instances), std::move(joined))
 {
     PlainArray<BuildItem<double>> items(asked_count());
@@ -61,6 +69,17 @@ InstanceTree::InstanceTree(std::vector<Instance> instances,
             items[i] = {box.lower, number, box.upper};
         }
     });
+    const auto asked = static_cast<double>(items.size());
+    if (earlier.trees != nullptr && earlier.rays > 0) {
+        auto refitted = earlier.trees->refit(
+            {items.data(), items.size()}, split, kVisitsToBuildOne * asked / earlier.rays);
+        if (refitted) {
+            bvh_ = std::move(*refitted);
+            bounds_ = {bvh_.root.lower, bvh_.root.upper};
+            upper_level_ = UpperLevel::refitted;
+            return;
+        }
+    }
     std::size_t count = 0;
     for (const BuildItem<double>& item : items) {
         const Bounds3d box{item.lower, item.upper};
@@ -70,6 +89,9 @@ InstanceTree::InstanceTree(std::vector<Instance> instances,
     }
     items.shorten(count);
     bvh_ = *build_bvh<double>(std::move(items), {.split = split, .leaf_size = 1}, pool);
+    if (bvh_.pairs.empty()) return;
+    upper_level_ = UpperLevel::built;
+    if (earlier.trees != nullptr) earlier.trees->keep(bvh_, asked_count(), split);
 }
 
 InstanceTree

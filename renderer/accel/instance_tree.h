@@ -6,11 +6,14 @@
 // Joined     instances whose meshes were put together (joined_mesh.h) are met there alone, and told apart again.
 // Cost       one instance alone is asked directly: the level costs nothing where a scene does not need it. A list,
 //            for measuring, asks every instance.
+// Refitted   a tree of an earlier frame of an animation, where that takes less time in all than building anew would.
 #pragma once
 
 #include "renderer/accel/bvh.h"
+#include "renderer/accel/bvh_topology_cache.h"
 #include "renderer/accel/instance.h"
 #include "renderer/accel/joined_mesh.h"
+#include "renderer/description/report.h"
 
 #include <optional>
 #include <span>
@@ -19,13 +22,20 @@
 
 namespace renderer {
 
+// Where earlier frames of an animation left their trees, and this one leaves its own.
+struct EarlierFrames {
+    BvhTopologyCache* trees = nullptr; // or none
+    double rays = 0;                   // to be traced in this one, about
+};
+
 class InstanceTree {
 public:
     // Instances keep their numbers; those with nothing to hit are never found.
     InstanceTree(std::vector<Instance> instances,
                  BvhSplit split,
                  ThreadPool& pool,
-                 std::optional<JoinedMesh> joined = std::nullopt);
+                 std::optional<JoinedMesh> joined = std::nullopt,
+                 const EarlierFrames& earlier = {});
     // No tree: every instance in turn; `boxes_first`: only those whose box the ray meets.
     static InstanceTree
     list(std::vector<Instance> instances, bool boxes_first, std::optional<JoinedMesh> joined = std::nullopt);
@@ -43,6 +53,7 @@ public:
 
     std::span<const Instance> instances() const { return instances_; }
     const Bounds3d& bounds() const { return bounds_; } // empty where nothing can be hit
+    UpperLevel upper_level() const { return upper_level_; }
     std::uint64_t size_bytes() const
     {
         return bvh_.size_bytes() + instances_.capacity() * sizeof(Instance) +
@@ -89,6 +100,7 @@ private:
     Bvh<double> bvh_;                     // `order` holds instance numbers
     std::vector<Listed> listed_;          // instead of the tree
     bool boxes_first_ = false;
+    UpperLevel upper_level_ = UpperLevel::none;
     Bounds3d bounds_;
 };
 

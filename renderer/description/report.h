@@ -64,10 +64,18 @@ struct TimingReport {
     std::uint64_t bounce_rays = 0; // of paths and branches beyond the camera's
 };
 
+// Of the two levels that rays go through, the one over the objects: see accel/instance_tree.h.
+enum class UpperLevel : std::uint8_t {
+    none,     // one object, or all joined in one, is asked directly; or every object in turn
+    built,    // for this scene
+    refitted, // around the objects of this scene, from that of an earlier one
+};
+
 struct GeometryReport {
     std::uint64_t triangles = 0; // unique, instances not counted
     std::uint64_t instances = 0;
     std::uint64_t bvh_bytes = 0;
+    UpperLevel upper_level = UpperLevel::none;
 };
 
 // What a meter read: the mean of independent replicates, and its standard error from their spread.

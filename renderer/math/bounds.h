@@ -39,10 +39,14 @@ using Bounds3f = Bounds3<float>;
 using Bounds3d = Bounds3<double>;
 
 // Of its surface; of a box that is not empty, and whose extent is finite.
+inline double half_area(const Bounds3d& box)
+{
+    const Vec3d e = box.extent();
+    return e.x * e.y + e.y * e.z + e.z * e.x;
+}
 inline double half_area(const Bounds3f& box)
 {
-    const Vec3d e = to_double(box.upper) - to_double(box.lower);
-    return e.x * e.y + e.y * e.z + e.z * e.x;
+    return half_area(Bounds3d{to_double(box.lower), to_double(box.upper)});
 }
 
 } // namespace renderer

@@ -335,14 +335,14 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      ThreadPool& pool,
                                      const std::stop_token& stop,
                                      std::span<const SharedImage> images,
-                                     SkyCache* skies)
+                                     SceneCaches* caches)
 {
     const DefaultFloatingPoint whatever_the_caller_has;
     const SceneDescription& description = scene.description;
     const AccelerationSettings& acceleration = settings.acceleration;
     Preparation made(description, plan, meshes, images, mesh_tree(acceleration), pool, stop);
     if (!made.run()) return nullptr;
-    const auto sky = sky_light(description, plan, pool, stop, skies);
+    const auto sky = sky_light(description, plan, pool, stop, caches != nullptr ? &caches->skies : nullptr);
     if (plan.sky && !sky) return nullptr;
     const auto surroundings =
         sky ? light_from(*sky, pool, made.lights) : environment_map(description, images);
@@ -353,9 +353,11 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
             ? InstanceTree(std::move(made.instances),
                            acceleration.split.value_or(BvhSplit::sah),
                            pool,
-                           std::move(made.joined))
+                           std::move(made.joined),
+                           {caches != nullptr ? &caches->upper_levels : nullptr, plan.prediction.rays})
             : InstanceTree::list(std::move(made.instances), acceleration.bounds, std::move(made.joined));
     made.geometry.bvh_bytes += tree.size_bytes();
+    made.geometry.upper_level = tree.upper_level();
     made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds(), plan.world_origin);
     made.numerics.precision = plan.precision;
     const Camera camera(moved(description.camera.value(), plan.world_origin),

@@ -18,9 +18,9 @@
 #include "renderer/materials/media.h"
 #include "renderer/plan/plan.h"
 #include "renderer/sampling/warp.h"
+#include "renderer/scene/scene_caches.h"
 #include "renderer/scene/scene_lights.h"
 #include "renderer/scene/surface_textures.h"
-#include "renderer/sky/sky_cache.h"
 #include "renderer/sky/sky_light.h"
 
 #include <cstdint>
@@ -149,8 +149,8 @@ private:
 };
 
 // meshes[i] is the prepared form of description.meshes[i], images[i] the decoded one of description.images[i]; `plan` is make_plan's for this very scene, so that
-// nothing is checked again. An atmosphere's tables come from `skies`, if there is such a cache. Builds the trees of the parts that objects name: nullptr only if `stop` was
-// requested meanwhile.
+// nothing is checked again. What an earlier scene left in `caches`, if there are such, is not made again. Builds the trees of the parts that objects name: nullptr only if
+// `stop` was requested meanwhile.
 std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      const Plan& plan,
                                      std::span<const std::shared_ptr<const PreparedMesh>> meshes,
@@ -158,6 +158,6 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                                      ThreadPool& pool,
                                      const std::stop_token& stop = {},
                                      std::span<const SharedImage> images = {},
-                                     SkyCache* skies = nullptr);
+                                     SceneCaches* caches = nullptr);
 
 } // namespace renderer

@@ -211,7 +211,7 @@ std::variant<JobOutcome, api::ProblemDetails, StoppedRun> run_job(const JobRun& 
     if (std::holds_alternative<StoppedRun>(answer)) return StoppedRun{};
     auto& [imported, scene, plan] = std::get<Planned>(answer);
     const auto prepared = renderer::prepare(
-        scene, plan, imported.meshes, settings, tools.pool, run.stop, imported.images, tools.skies);
+        scene, plan, imported.meshes, settings, tools.pool, run.stop, imported.images, tools.caches);
     if (!prepared || run.stop.stop_requested()) return StoppedRun{};
 
     run.running();

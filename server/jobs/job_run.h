@@ -9,7 +9,7 @@
 #include "renderer/description/limits.h"
 #include "renderer/parallel/thread_pool.h"
 #include "renderer/render.h"
-#include "renderer/sky/sky_cache.h"
+#include "renderer/scene/scene_caches.h"
 #include "server/import/import_service.h"
 #include "server/jobs/live_jobs.h"
 
@@ -33,7 +33,7 @@ struct RunTools {
     ImportService& imports;
     renderer::ThreadPool& pool;
     renderer::Limits limits;
-    renderer::SkyCache* skies = nullptr; // where nothing is rendered
+    renderer::SceneCaches* caches = nullptr; // where nothing is rendered
 };
 
 struct StoppedRun {};

@@ -140,7 +140,7 @@ void Worker::run_request(const Task& task, const api::JobRequest& request)
                          [this, &id](const renderer::RenderProgress& progress) {
                              rooms_.live.set_progress(id, progress.fraction, progress.samples);
                          }};
-    auto ended = run_job(run, {rooms_.imports, pool_, rooms_.limits, &skies_});
+    auto ended = run_job(run, {rooms_.imports, pool_, rooms_.limits, &caches_});
     if (auto* outcome = std::get_if<JobOutcome>(&ended))
         end_rendered(task, std::move(*outcome));
     else if (auto* error = std::get_if<api::ProblemDetails>(&ended))

@@ -8,7 +8,7 @@
 #include "api/job_request.h"
 #include "renderer/description/limits.h"
 #include "renderer/parallel/thread_pool.h"
-#include "renderer/sky/sky_cache.h"
+#include "renderer/scene/scene_caches.h"
 #include "server/import/import_service.h"
 #include "server/jobs/live_jobs.h"
 #include "server/jobs/result_keeper.h"
@@ -70,7 +70,7 @@ private:
 
     Rooms rooms_;
     renderer::ThreadPool pool_;
-    renderer::SkyCache skies_;
+    renderer::SceneCaches caches_;
     unsigned failures_ = 0; // of the world, in a row
     std::mutex rest_mutex_;
     std::condition_variable_any rest_over_;

@@ -133,7 +133,20 @@ TEST(Report, TellsSamplesAskedForAndTaken)
     EXPECT_TRUE(report["accuracy"]["estimate"].is_null());
     EXPECT_EQ(report["models"]["used"][0]["name"], "direct");
     EXPECT_EQ(report["timing"]["threads"], 2);
+    EXPECT_EQ(report["geometry"]["upper_level"], "none");
     EXPECT_EQ(report["notes"], json({"a.obj: 3 lines were left out"}));
+}
+
+TEST(Report, TellsWhereTheTreeOverTheObjectsIsFrom)
+{
+    renderer::RenderReport report = a_report();
+    for (const auto& [level, word] : {std::pair{renderer::UpperLevel::none, "none"},
+                                      {renderer::UpperLevel::built, "built"},
+                                      {renderer::UpperLevel::refitted, "refitted"}}) {
+        report.geometry.upper_level = level;
+        const json told = checked(api::write_report(report, "job", "key", {}), "Report");
+        EXPECT_EQ(told["geometry"]["upper_level"], word);
+    }
 }
 
 TEST(Report, DoesNotClaimAMetTargetThatItCannotKnow)

@@ -24,6 +24,14 @@ struct ImportOptions {
 };
 void run_import(const ImportOptions& options);
 
+struct FramesOptions {
+    std::vector<std::uint32_t> objects{1000, 10'000, 100'000};
+    int frames = 24;
+    double rays = 1e6; // of a frame
+    unsigned threads = 1;
+};
+void run_frames(const FramesOptions& options);
+
 struct LeaksOptions {
     double rays = 1e8;
     std::vector<std::string> meshes;

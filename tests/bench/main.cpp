@@ -42,6 +42,28 @@ void add_evaluation(CLI::App& app)
         ->capture_default_str();
 }
 
+void add_frames(CLI::App& app)
+{
+    Command command(app,
+                    "frames",
+                    "the tree over the objects of an animation, refitted and built anew",
+                    bench::run_frames);
+    auto& [to, options] = command;
+    to.add_option("--objects", options->objects, "numbers of objects")
+        ->check(CLI::Range(2, 10'000'000))
+        ->delimiter(',')
+        ->capture_default_str();
+    to.add_option("--frames", options->frames, "after the first")
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
+    to.add_option("--rays", options->rays, "that a frame traces, by which it is chosen")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    to.add_option("--threads", options->threads, "that build")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+}
+
 void add_import(CLI::App& app)
 {
     Command command(app, "import", "from a mesh file to a tree, stage by stage", bench::run_import);
@@ -178,6 +200,7 @@ int main(int argc, char** argv)
     CLI::App app{"Measures Heliograph beside a peer or a baseline in the same run.", "heliograph-bench"};
     app.require_subcommand(1);
     for (const auto add : {add_evaluation,
+                           add_frames,
                            add_import,
                            add_leaks,
                            add_memory,

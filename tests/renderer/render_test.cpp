@@ -64,6 +64,32 @@ TEST(Render, GivesTheSameBitsWhateverTheAcceleration)
                 }
 }
 
+TEST(Render, GivesTheSameBitsWhateverEarlierFramesLeftBehind)
+{
+    TestScene test;
+    test.settings.image.width_px = test.settings.image.height_px = 12;
+    test.settings.quality.samples = 1;
+    test.meshes.push_back(tests::knot(24, 6));
+    for (int i = 0; i < 400; ++i) {
+        ObjectDescription& object = test.description.objects.emplace_back();
+        object.shape = i % 3 == 0 ? Shape{MeshShape{}} : Shape{SphereShape{0.3}};
+        object.world_from_object = Affine3::translate({1.0 * (i % 8), 1.0 * (i / 8 % 8), 1.0 * (i / 64)}) *
+                                   Affine3::scale({.2, .2, .2});
+    }
+    SceneCaches caches;
+    EXPECT_EQ(render_description(test, 2, &caches).report.geometry.upper_level, UpperLevel::built);
+    for (int frame = 1; frame <= 5; ++frame) {
+        for (int i = frame; i < 400; i += 7) {
+            Affine3& there = test.description.objects[static_cast<std::size_t>(i)].world_from_object;
+            there = Affine3::translate({0.05 * (i % 3), 0.03, -0.01 * (i % 5)}) * there;
+        }
+        const RenderResult kept = render_description(test, 2, &caches), alone = render_description(test, 2);
+        EXPECT_EQ(kept.report.geometry.upper_level, UpperLevel::refitted) << frame;
+        EXPECT_EQ(alone.report.geometry.upper_level, UpperLevel::built);
+        EXPECT_EQ(digest(kept.film), digest(alone.film)) << frame;
+    }
+}
+
 TEST(Render, GivesTheSameBitsOfASingleObjectWithoutTrees)
 {
     TestScene test = kitchen_sink();

@@ -28,7 +28,7 @@ Vec3d knot_point(double turn)
 
 } // namespace
 
-ReadyScene make_ready(const TestScene& test, ThreadPool& pool)
+ReadyScene make_ready(const TestScene& test, ThreadPool& pool, SceneCaches* caches)
 {
     SceneDescription description = test.description;
     std::vector<MeshFacts> facts;
@@ -46,14 +46,14 @@ ReadyScene make_ready(const TestScene& test, ThreadPool& pool)
     for (std::size_t i = 0; i < test.meshes.size(); ++i)
         prepared.push_back(prepare_mesh(test.meshes[i], std::get<Plan>(plan).mesh_trees[i], pool));
     ReadyScene ready{std::move(std::get<Plan>(plan)), nullptr};
-    ready.scene = prepare(assumed, ready.plan, prepared, test.settings, pool, {}, test.images);
+    ready.scene = prepare(assumed, ready.plan, prepared, test.settings, pool, {}, test.images, caches);
     return ready;
 }
 
-RenderResult render_description(const TestScene& test, unsigned threads)
+RenderResult render_description(const TestScene& test, unsigned threads, SceneCaches* caches)
 {
     ThreadPool pool(threads);
-    const ReadyScene ready = make_ready(test, pool);
+    const ReadyScene ready = make_ready(test, pool, caches);
     return render(*ready.scene, ready.plan, test.settings, pool).value();
 }
 

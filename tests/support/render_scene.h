@@ -25,9 +25,11 @@ struct ReadyScene {
     renderer::Plan plan;
     std::shared_ptr<const renderer::Scene> scene;
 };
-ReadyScene make_ready(const TestScene& test, renderer::ThreadPool& pool);
+ReadyScene
+make_ready(const TestScene& test, renderer::ThreadPool& pool, renderer::SceneCaches* caches = nullptr);
 
-renderer::RenderResult render_description(const TestScene& test, unsigned threads = 2);
+renderer::RenderResult
+render_description(const TestScene& test, unsigned threads = 2, renderer::SceneCaches* caches = nullptr);
 
 // A (2,3) torus knot, smooth, with normals: rings x sides quads.
 renderer::Mesh knot(std::uint32_t rings = 96, std::uint32_t sides = 12);

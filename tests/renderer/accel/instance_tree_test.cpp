@@ -70,6 +70,82 @@ TEST(InstanceTree, FindsTheSameHitAsBruteForce)
     EXPECT_GT(hits, 5000 / kThinning);
 }
 
+TEST(InstanceTree, FindsTheSameHitsInATreeThatWasRefitted)
+{
+    Random random(11);
+    for (const BvhSplit split : {BvhSplit::sah, BvhSplit::midpoint})
+        for (const std::size_t count : {2u, 3u, 40u, 300u}) {
+            Objects objects;
+            while (objects.size() < count) {
+                const Affine3 placed = random_placing(random, 3);
+                objects.add(unit_box(), placed, objects.size() % 5 != 0); // some hidden from the camera
+            }
+            BvhTopologyCache trees;
+            const EarlierFrames earlier{&trees, 1e-3}; // so few rays are worth no building
+            EXPECT_EQ(objects.tree(split, earlier).upper_level(), UpperLevel::built);
+            for (const double by : {0.0, 0.01, 1.0, 30.0}) {
+                for (std::size_t i = 0; i < objects.size(); i += 2)
+                    objects.move(i, Affine3::translate(random.direction() * by));
+                const InstanceTree refitted = objects.tree(split, earlier), built = objects.tree(split);
+                ASSERT_EQ(refitted.upper_level(), UpperLevel::refitted);
+                ASSERT_EQ(built.upper_level(), UpperLevel::built);
+                EXPECT_EQ(refitted.bounds(), built.bounds());
+                EXPECT_EQ(refitted.size_bytes(), built.size_bytes());
+                for (int i = 0; i < 2000 / kThinning; ++i) {
+                    Ray rays[4];
+                    for (Ray& ray : rays)
+                        ray = {random.direction() * random.uniform(0, 20), random.direction()};
+                    const RayKind kind = i % 2 == 0 ? RayKind::camera : RayKind::other;
+                    SceneHit hits[4];
+                    const std::uint64_t hit = refitted.closest_hits(rays, hits, kind),
+                                        met = refitted.any_hits(rays, kind);
+                    for (unsigned r = 0; r < 4; ++r) {
+                        const auto expected = built.closest_hit_brute_force(rays[r], kind);
+                        const auto alone = refitted.closest_hit(rays[r], kind);
+                        ASSERT_EQ((hit >> r & 1) != 0, expected.has_value());
+                        ASSERT_EQ((met >> r & 1) != 0, expected.has_value());
+                        ASSERT_EQ(alone.has_value(), expected.has_value());
+                        if (!expected) continue;
+                        for (const SceneHit& found : {hits[r], *alone}) {
+                            ASSERT_EQ(found.t, expected->t);
+                            ASSERT_EQ(found.instance, expected->instance);
+                            ASSERT_EQ(found.primitive, expected->primitive);
+                        }
+                    }
+                }
+            }
+        }
+}
+
+TEST(InstanceTree, IsBuiltAnewWhereRaysWouldLoseMoreInAnOldOneThanThatTakes)
+{
+    Random random(12);
+    Objects objects;
+    while (objects.size() < 200)
+        objects.add(Sphere{0.1}, Affine3::translate(random.in_box({-5, -5, -5}, {5, 5, 5})));
+    BvhTopologyCache trees;
+    objects.tree(BvhSplit::sah, {&trees, 1e6});
+    objects.tree(BvhSplit::sah, {&trees, 1e6});
+    EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1e12}).upper_level(), UpperLevel::refitted); // the same
+    for (std::size_t i = 0; i < objects.size(); ++i)
+        objects.move(i, Affine3::translate(random.direction()));
+    EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 10}).upper_level(), UpperLevel::refitted);
+    EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1e6}).upper_level(), UpperLevel::built);
+    EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1e6}).upper_level(), UpperLevel::refitted); // that one
+}
+
+TEST(InstanceTree, HasNoUpperLevelOverASingleObject)
+{
+    Objects objects;
+    objects.add(Sphere{1}, Affine3{});
+    BvhTopologyCache trees;
+    EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1}).upper_level(), UpperLevel::none);
+    EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1}).upper_level(), UpperLevel::none);
+    EXPECT_EQ(trees.size_bytes(), 0u);
+    objects.add(Sphere{1}, Affine3::translate({3, 0, 0}));
+    EXPECT_EQ(objects.list(false).upper_level(), UpperLevel::none);
+}
+
 TEST(InstanceTree, AnswersARunAsItsRaysOneByOne)
 {
     Random random(3);

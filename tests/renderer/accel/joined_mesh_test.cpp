@@ -38,7 +38,15 @@ public:
     }
 
     InstanceTree apart() { return {instances_, BvhSplit::sah, pool_}; }
-    InstanceTree joined() { return {instances_, BvhSplit::sah, pool_, join()}; }
+    InstanceTree joined(const EarlierFrames& earlier = {})
+    {
+        return {instances_, BvhSplit::sah, pool_, join(), earlier};
+    }
+    void move(std::size_t number, const Affine3& by)
+    {
+        Instance& instance = instances_[number];
+        instance = Instance::place(instance.geometry(), by * instance.world_from_object()).value();
+    }
     InstanceTree listed(bool boxes_first) { return InstanceTree::list(instances_, boxes_first, join()); }
 
 private:
@@ -246,6 +254,35 @@ TEST(JoinedMesh, PrefersTheLowestInstanceAmongEquals)
             ASSERT_TRUE(hit);
             ASSERT_EQ(hit->instance, 1u) << first_is_joined;
         }
+    }
+}
+
+TEST(JoinedMesh, IsFoundWhereItsMembersHaveMovedInARefittedTree)
+{
+    Random random(13);
+    Objects objects;
+    constexpr std::size_t kCount = 60;
+    for (std::size_t i = 0; i < kCount; ++i)
+        add_random(objects, random);
+    BvhTopologyCache trees;
+    const EarlierFrames earlier{&trees, 1e-3}; // so few rays are worth no building
+    objects.joined(earlier);
+    for (const double by : {0.0, 0.1, 3.0}) {
+        for (std::size_t i = 0; i < kCount; i += 3)
+            objects.move(i, Affine3::translate(random.direction() * by));
+        const InstanceTree refitted = objects.joined(earlier), built = objects.joined();
+        ASSERT_EQ(refitted.upper_level(), UpperLevel::refitted);
+        int hits = 0;
+        for (int i = 0; i < 3000 / kThinning; ++i) {
+            const Ray ray = random_ray(random);
+            const auto hit = refitted.closest_hit(ray), expected = built.closest_hit_brute_force(ray);
+            ASSERT_EQ(hit.has_value(), expected.has_value());
+            ASSERT_EQ(refitted.any_hit(ray), expected.has_value());
+            if (!hit) continue;
+            expect_same(*hit, *expected);
+            ++hits;
+        }
+        EXPECT_GT(hits, 300 / kThinning);
     }
 }
 

@@ -27,7 +27,20 @@ public:
         ASSERT_TRUE(instance);
         instances_.push_back(*instance);
     }
-    InstanceTree tree(BvhSplit split = BvhSplit::sah) { return {instances_, split, pool_}; }
+    void move(std::size_t number, const Affine3& by)
+    {
+        Instance& instance = instances_[number];
+        const auto there = Instance::place(
+            instance.geometry(), by * instance.world_from_object(), instance.visible_to(RayKind::camera));
+        ASSERT_TRUE(there);
+        instance = *there;
+    }
+    std::size_t size() const { return instances_.size(); }
+
+    InstanceTree tree(BvhSplit split = BvhSplit::sah, const EarlierFrames& earlier = {})
+    {
+        return {instances_, split, pool_, std::nullopt, earlier};
+    }
     InstanceTree list(bool boxes_first) { return InstanceTree::list(instances_, boxes_first); }
 
 private:

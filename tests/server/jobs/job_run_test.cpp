@@ -1,7 +1,10 @@
 // Jobs at and over the limits of a scene, through the whole service.
 #include "tests/server/jobs/job_fixture.h"
 
+#include <nlohmann/json.hpp>
+
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -105,4 +108,38 @@ TEST_P(JobRun, ImportsNothingForAPictureThatDoesNotFit)
     ASSERT_EQ(failed.state, JobState::failed);
     EXPECT_EQ(failed.error.value().code, "over_limit");
     EXPECT_EQ(node->imports.imports_run(), 0U);
+}
+
+TEST_P(JobRun, KeepsTheTreeOverTheObjectsForTheNextFrameOfAnAnimation)
+{
+    const auto frame = [](int number) {
+        std::string objects;
+        for (int i = 0; i < 300; ++i) {
+            const std::string x = std::to_string(i % 20 + 0.01 * (i % 7) * number),
+                              z = std::to_string(i / 20);
+            objects += (i == 0 ? "" : ",") + std::string(R"({"shape":"sphere","radius":0.3,"transform":)") +
+                       R"([{"translate":[)" + x + ",0," + z + "]}]}";
+        }
+        return job_of(objects);
+    };
+    constexpr int kFrames = 3;
+    std::vector<std::string> pictures;
+    {
+        const auto node = open();
+        node->jobs.start();
+        for (int number = 0; number < kFrames; ++number) {
+            const std::string id = tests::succeeded(*node, submit(*node, frame(number)).id).id;
+            pictures.push_back(tests::digest_of_picture(*node, id));
+            const auto report = nlohmann::json::parse(tests::expect<std::string>(node->jobs.report(id)));
+            EXPECT_EQ(report.at("geometry").at("upper_level"), number == 0 ? "built" : "refitted");
+        }
+    }
+    for (int number = 1; number < kFrames; ++number) {
+        const auto node = open(); // which has seen no other frame
+        node->jobs.start();
+        const std::string id = tests::succeeded(*node, submit(*node, frame(number)).id).id;
+        EXPECT_EQ(tests::digest_of_picture(*node, id), pictures[static_cast<std::size_t>(number)]);
+        const auto report = nlohmann::json::parse(tests::expect<std::string>(node->jobs.report(id)));
+        EXPECT_EQ(report.at("geometry").at("upper_level"), "built");
+    }
 }
