@@ -65,6 +65,8 @@ public:
     // Every object of the scene, and every light that has a shape; false if `stop` was requested.
     bool run()
     {
+        instances.reserve(scene_.objects.size());
+        looks.reserve(scene_.objects.size());
         for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
             const ObjectDescription& object = scene_.objects[i];
             if (object.material && is_nothing(*object.material)) continue;
