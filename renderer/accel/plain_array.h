@@ -61,7 +61,11 @@ public:
     {
         std::copy(other.begin(), other.end(), begin());
     }
-    PlainArray& operator=(const PlainArray& other) { return *this = PlainArray(other); }
+    PlainArray& operator=(const PlainArray& other)
+    {
+        if (this != &other) *this = PlainArray(other);
+        return *this;
+    }
 
     // The memory stays as it is.
     void shorten(std::size_t size) { size_ = std::min(size, size_); }
