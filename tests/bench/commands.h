@@ -3,7 +3,9 @@
 // main.cpp alone knows the command line.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,12 +61,15 @@ void run_pictures(const PicturesOptions& options);
 
 struct RaysOptions {
     std::string mesh, view = "object", peer, split = "sah", json;
-    std::vector<std::string> only; // ray sets; none: all
-    std::uint64_t terrain = 0;     // triangles; 0: the mesh file
+    std::vector<std::string> only;    // ray sets; none: all
+    std::vector<std::string> engines; // texts of which a name contains one; none: all
+    std::size_t every = 1;            // of so many runs of 4096 rays one is traced
+    std::uint64_t terrain = 0;        // triangles; 0: the mesh file
     std::vector<double> diagonals{0};
     std::vector<unsigned> threads{1};
     bool table = false, every_kernel = false;
     int repeats = 5;
+    std::optional<int> builds; // how often they are timed; none: as often as rays
 };
 void run_rays(const RaysOptions& options);
 

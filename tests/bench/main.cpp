@@ -155,6 +155,12 @@ void add_rays(CLI::App& app)
         ->capture_default_str();
     to.add_option("--only", options->only, "ray sets to trace: primary, shadow, diffuse, ...")
         ->delimiter(',');
+    to.add_option("--every", options->every, "of so many runs of 4096 rays of a set trace one")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+        ->capture_default_str();
+    to.add_option("--engines", options->engines, "only those whose name contains one of these texts");
+    to.add_option("--builds", options->builds, "of each tree, timed; 0: none; not given: as --repeats")
+        ->check(CLI::Range(0, 1000));
     to.add_flag("--kernels", options->every_kernel, "every kernel of ours, not only the best");
     to.add_option("--json", options->json, "JSON into this file, - for stdout, instead of the table");
     to.add_flag("--table", options->table, "the table as well as JSON");

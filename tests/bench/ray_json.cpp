@@ -40,7 +40,7 @@ json to_json(const EngineReport& engine)
                      {"hits", f.hits},
                      {"million_per_s", {{"cpu", to_json(f.cpu)}, {"wall", to_json(f.wall)}}},
                      {"million_per_cpu_s_by_repeat", f.cpu_repeats}};
-            if (!engine.ours) row["differs_from_first_engine"] = to_json(set.differences);
+            if (!engine.ours && set.differences) row["differs_from_first_engine"] = to_json(*set.differences);
             rays.push_back(std::move(row));
         }
     return {{"name", engine.name},
@@ -68,6 +68,7 @@ json to_json(const std::vector<RayReport>& reports)
                          {"diagonal", report.diagonal},
                          {"native_size", report.native},
                          {"repeats", report.repeats},
+                         {"every", report.every},
                          {"engines", std::move(engines)}});
     }
     return {{"format", "heliograph-bench rays 1"}, {"machine", machine_json()}, {"cases", std::move(cases)}};

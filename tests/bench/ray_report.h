@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,25 +30,26 @@ struct RayFigures {
 
 struct SetFigures {
     std::string set;
-    std::vector<RayFigures> figures; // one a number of threads
-    HitDifferences differences;      // from the first engine's
+    std::vector<RayFigures> figures;           // one a number of threads
+    std::optional<HitDifferences> differences; // of a peer from the first engine's, which is ours
 };
 
 struct EngineReport {
     std::string name, tree;
     bool ours = false, high_quality = false;
-    std::vector<BuildFigures> builds; // one a number of threads
+    std::vector<BuildFigures> builds; // one a number of threads; none where builds are not timed
     double bytes_per_triangle = 0, vertex_bytes_per_triangle = 0;
     std::vector<SetFigures> sets;
 };
 
-// One mesh at one size. The first engine is ours.
+// One mesh at one size. The first engine is ours, unless only peers were asked for.
 struct RayReport {
     std::string mesh, view;
     std::uint64_t triangles = 0;
     double diagonal = 0;
     bool native = true; // the diagonal that the mesh came with
     int repeats = 0;
+    std::size_t every = 1; // of so many runs of rays one was traced
     std::vector<EngineReport> engines;
 };
 

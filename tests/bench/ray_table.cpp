@@ -43,11 +43,13 @@ std::string mode_of(const std::string& engine)
     return mode;
 }
 
-const BuildFigures& build_of(const EngineReport& engine, unsigned threads)
+// Null where builds were not timed.
+const BuildFigures* build_of(const EngineReport& engine, unsigned threads)
 {
-    return *std::find_if(engine.builds.begin(), engine.builds.end(), [&](const BuildFigures& b) {
+    const auto found = std::find_if(engine.builds.begin(), engine.builds.end(), [&](const BuildFigures& b) {
         return b.threads == threads;
     });
+    return found == engine.builds.end() ? nullptr : &*found;
 }
 
 // Repeat by repeat, since what disturbs the machine disturbs a whole turn.
@@ -91,7 +93,7 @@ void print_ratio_to_best(std::FILE* out,
 void print_rates(std::FILE* out, const RayReport& report, std::size_t thread_index)
 {
     const EngineReport& first = report.engines.front();
-    const unsigned threads = first.builds[thread_index].threads;
+    const unsigned threads = first.sets.front().figures[thread_index].threads;
     std::fprintf(out,
                  "%-*s",
                  kNameWidth,
@@ -105,13 +107,21 @@ void print_rates(std::FILE* out, const RayReport& report, std::size_t thread_ind
             const RayFigures& f = set.figures[thread_index];
             print_cell(out, format("%.2f +-%.0f%%", f.cpu.median, spread_percent(f.cpu)));
         }
-        const BuildFigures& build = build_of(engine, threads);
+        std::string cpu = "-", wall = "-";
+        if (const BuildFigures* build = build_of(engine, threads)) {
+            cpu = format("%.1f +-%.0f%%", build->cpu_ms.median, spread_percent(build->cpu_ms));
+            wall = format("%.1f", build->wall_ms.median);
+        }
         std::fprintf(out,
-                     "%16s %9.1f %7.1f %7.1f\n",
-                     format("%.1f +-%.0f%%", build.cpu_ms.median, spread_percent(build.cpu_ms)).c_str(),
-                     build.wall_ms.median,
+                     "%16s %9s %7.1f %7.1f\n",
+                     cpu.c_str(),
+                     wall.c_str(),
                      engine.bytes_per_triangle,
                      engine.vertex_bytes_per_triangle);
+    }
+    if (!first.ours) {
+        std::fprintf(out, "\n");
+        return;
     }
     const auto peer = [](const EngineReport& e) { return !e.ours; };
     print_ratio_to_best(out, report, thread_index, "ours / the peer's best mode", peer);
@@ -126,10 +136,16 @@ void print_rates(std::FILE* out, const RayReport& report, std::size_t thread_ind
                 ratio(first.sets[set].figures[thread_index], engine.sets[set].figures[thread_index]);
             print_cell(out, format("%.2f", r.median));
         }
+        const BuildFigures *build = build_of(first, threads), *theirs = build_of(engine, threads);
+        std::string cpu = "-", wall = "-";
+        if (build != nullptr && theirs != nullptr) {
+            cpu = format("%.2f", build->cpu_ms.median / theirs->cpu_ms.median);
+            wall = format("%.2f", build->wall_ms.median / theirs->wall_ms.median);
+        }
         std::fprintf(out,
-                     "%16.2f %9.2f %7.2f\n",
-                     build_of(first, threads).cpu_ms.median / build_of(engine, threads).cpu_ms.median,
-                     build_of(first, threads).wall_ms.median / build_of(engine, threads).wall_ms.median,
+                     "%16s %9s %7.2f\n",
+                     cpu.c_str(),
+                     wall.c_str(),
                      first.bytes_per_triangle / engine.bytes_per_triangle);
     }
     std::fprintf(out, "\n");
@@ -137,7 +153,8 @@ void print_rates(std::FILE* out, const RayReport& report, std::size_t thread_ind
 
 void print_hits(std::FILE* out, const RayReport& report)
 {
-    std::fprintf(out, "%-*s", kNameWidth, "hits; rays answered otherwise");
+    const bool compared = report.engines.front().ours;
+    std::fprintf(out, "%-*s", kNameWidth, compared ? "hits; rays answered otherwise" : "hits");
     for (const SetFigures& set : report.engines.front().sets)
         print_cell(out, format("of %" PRIu64, set.figures.front().rays));
     std::fprintf(out, "\n");
@@ -145,7 +162,11 @@ void print_hits(std::FILE* out, const RayReport& report)
     for (const EngineReport& engine : report.engines) {
         std::fprintf(out, "%-*s", kNameWidth, engine.name.c_str());
         for (const SetFigures& set : engine.sets) {
-            const HitDifferences& d = set.differences;
+            if (!compared) {
+                print_cell(out, format("%" PRIu64, set.figures.front().hits));
+                continue;
+            }
+            const HitDifferences d = set.differences.value_or(HitDifferences{});
             print_cell(out, format("%" PRIu64 "; %" PRIu64, set.figures.front().hits, d.total()));
             sum.only_ours += d.only_ours;
             sum.only_theirs += d.only_theirs;
@@ -157,6 +178,10 @@ void print_hits(std::FILE* out, const RayReport& report)
             sum.ours_wrong += d.ours_wrong;
         }
         std::fprintf(out, "\n");
+    }
+    if (!compared) {
+        std::fprintf(out, "\n");
+        return;
     }
     std::fprintf(out,
                  "%" PRIu64 " answers differ: %" PRIu64 " hits only ours, %" PRIu64 " only theirs, %" PRIu64
@@ -186,7 +211,8 @@ void print_table(const RayReport& report, std::FILE* out)
                  report.diagonal,
                  report.native ? " (its own)" : "",
                  report.repeats);
-    for (std::size_t i = 0; i < report.engines.front().builds.size(); ++i)
+    if (report.every > 1) std::fprintf(out, "of %zu runs of rays one was traced\n", report.every);
+    for (std::size_t i = 0; i < report.engines.front().sets.front().figures.size(); ++i)
         print_rates(out, report, i);
     print_hits(out, report);
 }

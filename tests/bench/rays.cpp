@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -25,6 +26,9 @@ namespace {
 using namespace renderer;
 
 using Engines = std::vector<std::unique_ptr<RayEngine>>;
+
+// Rays that a thread claims together.
+constexpr std::size_t kChunk = 4096;
 
 // The mesh at one size.
 struct Case {
@@ -46,9 +50,11 @@ void take_turns(std::size_t engines, int repeats, const Measure& measure)
 
 void measure_builds(Case& c, const RaysOptions& options)
 {
+    const int builds = options.builds.value_or(options.repeats);
+    if (builds == 0) return;
     for (const unsigned threads : options.threads) {
         std::vector<std::vector<double>> cpu(c.engines.size()), wall(c.engines.size());
-        take_turns(c.engines.size(), options.repeats, [&](std::size_t e) {
+        take_turns(c.engines.size(), builds, [&](std::size_t e) {
             const auto same_tree = [&](const auto& other) { return other->tree() == c.engines[e]->tree(); };
             if (std::find_if(c.engines.begin(), c.engines.end(), same_tree)->get() != c.engines[e].get())
                 return;
@@ -73,7 +79,6 @@ struct Traced {
 // All rays of a set, in chunks that threads claim in order.
 Traced trace_all(const RayEngine& engine, const RaySet& set, ThreadPool& pool, unsigned threads)
 {
-    constexpr std::size_t kChunk = 4096;
     std::atomic<std::uint64_t> hits{0};
     std::vector<double> cpu(threads, 0);
     const std::span<const FloatRay> rays(set.rays);
@@ -97,7 +102,7 @@ Traced trace_all(const RayEngine& engine, const RaySet& set, ThreadPool& pool, u
 void measure_set(Case& c, const RaySet& set, const RaysOptions& options)
 {
     for (EngineReport& engine : c.report.engines)
-        engine.sets.push_back({set.name, {}, {}});
+        engine.sets.push_back({set.name, {}, std::nullopt});
     const auto million = static_cast<double>(set.rays.size()) / 1e6;
     for (const unsigned threads : options.threads) {
         ThreadPool pool(threads);
@@ -118,6 +123,7 @@ void measure_set(Case& c, const RaySet& set, const RaysOptions& options)
             c.report.engines[e].sets.back().figures.push_back(std::move(f));
         }
     }
+    if (!c.report.engines.front().ours) return; // nobody to hold the others against
     const auto answers_of = [&](const RayEngine& engine) {
         std::vector<FoundHit> found(set.rays.size());
         engine.trace(set, set.rays, found.data());
@@ -127,6 +133,19 @@ void measure_set(Case& c, const RaySet& set, const RaysOptions& options)
     for (std::size_t e = 1; e < c.engines.size(); ++e)
         c.report.engines[e].sets.back().differences =
             compare_hits(c.mesh, set, {*c.engines.front(), ours}, {*c.engines[e], answers_of(*c.engines[e])});
+}
+
+// Whole chunks stay, so that rays keep most of the neighbours that they run alike with.
+void keep_every(std::size_t nth, RaySet& set)
+{
+    if (nth == 1) return;
+    std::vector<FloatRay> kept;
+    for (std::size_t first = 0; first < set.rays.size(); first += nth * kChunk)
+        kept.insert(kept.end(),
+                    set.rays.begin() + static_cast<std::ptrdiff_t>(first),
+                    set.rays.begin() +
+                        static_cast<std::ptrdiff_t>(std::min(first + kChunk, set.rays.size())));
+    set.rays = std::move(kept);
 }
 
 std::vector<RaySet> sets_of(const Case& c, const RaysOptions& options)
@@ -142,7 +161,25 @@ std::vector<RaySet> sets_of(const Case& c, const RaysOptions& options)
             return std::find(options.only.begin(), options.only.end(), set.name) == options.only.end();
         });
     if (sets.empty()) throw std::runtime_error("no ray set has such a name");
+    for (RaySet& set : sets)
+        keep_every(options.every, set);
     return sets;
+}
+
+std::string in_small_letters(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char letter) {
+        return static_cast<char>(std::tolower(letter));
+    });
+    return text;
+}
+
+// Where its name contains one of the texts, or there is none.
+bool is_asked_for(const RayEngine& engine, const std::vector<std::string>& texts)
+{
+    return texts.empty() || std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
+               return in_small_letters(engine.name()).find(in_small_letters(text)) != std::string::npos;
+           });
 }
 
 // Filled in place: engines refer to the mesh.
@@ -154,13 +191,13 @@ void prepare_case(Case& c, const Mesh& native, double diagonal, const RaysOption
         scale_mesh(c.mesh, c.scale);
     }
     const BvhSplit split = split_named(options.split);
-    c.engines = make_heliograph_engines(c.mesh, split, options.every_kernel);
-    const std::size_t ours = c.engines.size();
+    Engines made = make_heliograph_engines(c.mesh, split, options.every_kernel);
+    const std::size_t ours = made.size();
     if (options.peer == "embree") {
         Engines peers = make_embree_engines(c.mesh);
         if (peers.empty())
             throw std::runtime_error("this build has no Embree: install libembree-dev and configure again");
-        std::move(peers.begin(), peers.end(), std::back_inserter(c.engines));
+        std::move(peers.begin(), peers.end(), std::back_inserter(made));
     }
     c.report = {.mesh = options.terrain != 0 ? "terrain" : options.mesh,
                 .view = options.view,
@@ -168,14 +205,21 @@ void prepare_case(Case& c, const Mesh& native, double diagonal, const RaysOption
                 .diagonal = diagonal_of(c.mesh),
                 .native = diagonal <= 0,
                 .repeats = options.repeats,
+                .every = options.every,
                 .engines = {}};
-    for (std::size_t e = 0; e < c.engines.size(); ++e)
-        c.report.engines.push_back({.name = c.engines[e]->name(),
-                                    .tree = c.engines[e]->tree(),
+    std::string names;
+    for (std::size_t e = 0; e < made.size(); ++e) {
+        names += "\n  " + made[e]->name();
+        if (!is_asked_for(*made[e], options.engines)) continue;
+        c.report.engines.push_back({.name = made[e]->name(),
+                                    .tree = made[e]->tree(),
                                     .ours = e < ours,
-                                    .high_quality = c.engines[e]->high_quality(),
+                                    .high_quality = made[e]->high_quality(),
                                     .builds = {},
                                     .sets = {}});
+        c.engines.push_back(std::move(made[e]));
+    }
+    if (c.engines.empty()) throw std::runtime_error("no engine has such a name; there are" + names);
 }
 
 void trace_case(Case& c, const RaysOptions& options)
