@@ -3,6 +3,7 @@
 #include "renderer/parallel/thread_pool.h"
 #include "tests/bench/bench_mesh.h"
 #include "tests/bench/commands.h"
+#include "tests/bench/counted.h"
 #include "tests/bench/ray_engine.h"
 #include "tests/bench/ray_report.h"
 #include "tests/bench/stopwatch.h"
@@ -99,6 +100,25 @@ Traced trace_all(const RayEngine& engine, const RaySet& set, ThreadPool& pool, u
     return traced;
 }
 
+// The same, where callgrind may count it: twice, since its caches are empty at first, and the lines that the second
+// pass fetches are those that stay to be fetched.
+Traced trace_counted(const RayEngine& engine, const RaySet& set, ThreadPool& pool, unsigned threads)
+{
+    if (!CountedWork::is_possible()) return trace_all(engine, set, pool, threads);
+    const auto label = [&](const char* caches) {
+        return nlohmann::json{
+            {"set", set.name}, {"engine", engine.name()}, {"rays", set.rays.size()}, {"caches", caches}}
+            .dump();
+    };
+    const std::string cold = label("cold"), warm = label("warm");
+    CountedWork counted;
+    trace_all(engine, set, pool, threads);
+    counted.dump(cold);
+    const Traced traced = trace_all(engine, set, pool, threads);
+    counted.dump(warm);
+    return traced;
+}
+
 void measure_set(Case& c, const RaySet& set, const RaysOptions& options)
 {
     for (EngineReport& engine : c.report.engines)
@@ -109,7 +129,7 @@ void measure_set(Case& c, const RaySet& set, const RaysOptions& options)
         std::vector<RayFigures> figures(c.engines.size());
         std::vector<std::vector<double>> wall(c.engines.size());
         take_turns(c.engines.size(), options.repeats, [&](std::size_t e) {
-            const Traced traced = trace_all(*c.engines[e], set, pool, threads);
+            const Traced traced = trace_counted(*c.engines[e], set, pool, threads);
             figures[e].cpu_repeats.push_back(million / traced.spent.cpu_s);
             wall[e].push_back(million / traced.spent.wall_s);
             figures[e].hits = traced.hits;
