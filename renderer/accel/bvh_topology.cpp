@@ -1,11 +1,15 @@
 #include "renderer/accel/bvh_topology.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
+#include <cmath>
 
 namespace renderer {
 
 namespace {
+
+constexpr std::size_t kMostInAPiece = 1024;
 
 Bounds3d box_of(const BvhNode<double>& node)
 {
@@ -22,6 +26,13 @@ Bounds3d box_around(const BvhPair<double>& pair)
     Bounds3d box = box_of(pair.child[0]);
     box.extend(box_of(pair.child[1]));
     return box;
+}
+
+// Inner nodes that a ray visits in trees built over so many primitives in a volume, on a floor or a shell, small and large:
+// at most 2.8 of the cube root, and twice the leaves (100 to 100,000, at every node). Long thin ones that cross need more.
+double most_visits(double primitives, double leaves)
+{
+    return 3 * std::cbrt(primitives) + 2 * leaves;
 }
 
 } // namespace
@@ -49,47 +60,120 @@ BvhTopology::BvhTopology(const Bvh<double>& tree, std::size_t primitives)
     : pairs_(tree.pairs.size()), order_(tree.order), root_{tree.root.first, tree.root.count},
       depth_(tree.depth), primitives_(primitives)
 {
+    std::vector<Visits> visits(pairs_.size());
+    std::vector<std::uint32_t> held(pairs_.size()); // primitives
     for (std::size_t i = pairs_.size(); i-- > 0;) {
         for (unsigned side = 0; side < 2; ++side) {
             const BvhNode<double>& child = tree.pairs[i].child[side];
             pairs_[i].child[side] = {child.first, child.count};
             assert(child.count != 0 || child.first > i); // pairs come after those that they hang in
+            held[i] += child.count != 0 ? child.count : held[child.first];
         }
-        pairs_[i].as_built = visits_of(tree, i, [this](std::size_t below) { return pairs_[below].as_built; });
+        visits[i] = visits_of(tree, i, [&](std::size_t below) { return visits[below]; });
+        pairs_[i].as_built = visits[i];
+        pairs_[i].as_built.inner = std::min(visits[i].inner, most_visits(held[i], visits[i].leaves));
+    }
+    cut_in_pieces();
+}
+
+void BvhTopology::cut_in_pieces()
+{
+    struct Reach {
+        std::uint32_t size, last; // pairs, and the last of them
+    };
+    std::vector<Reach> reach(pairs_.size());
+    for (std::size_t i = pairs_.size(); i-- > 0;) {
+        reach[i] = {1, static_cast<std::uint32_t>(i)};
+        for (const Child& child : pairs_[i].child) {
+            if (child.count != 0) continue;
+            reach[i].size += reach[child.first].size;
+            reach[i].last = std::max(reach[i].last, reach[child.first].last);
+        }
+    }
+    for (std::uint32_t i = 0; i < pairs_.size();) {
+        const auto [size, last] = reach[i];
+        if (size <= kMostInAPiece && last == i + size - 1) {
+            pieces_.push_back({i, i + size});
+            i += size;
+        } else {
+            above_.push_back(i++);
+        }
     }
 }
 
-std::optional<Bvh<double>> BvhTopology::refit(std::span<const BuildItem<double>> boxes,
-                                              double visits_more) const
+bool BvhTopology::is_of_use() const
 {
-    const auto has_box = [&](std::uint32_t primitive) { return !box_of(boxes[primitive]).empty(); };
-    if (boxes.size() != primitives_ || !std::all_of(order_.begin(), order_.end(), has_box) ||
-        static_cast<std::size_t>(std::count_if(boxes.begin(), boxes.end(), [](const auto& item) {
-            return !box_of(item).empty();
-        })) != order_.size())
-        return std::nullopt;
-    Bvh<double> tree;
-    tree.pairs = PlainArray<BvhPair<double>>(pairs_.size());
-    tree.depth = depth_;
-    const auto refitted = [&](const Child& child) {
-        Bounds3d box;
-        if (child.count == 0) box = box_around(tree.pairs[child.first]);
-        for (std::uint32_t i = child.first; i < child.first + child.count; ++i)
-            box.extend(box_of(boxes[order_[i]]));
-        return BvhNode<double>{box.lower, child.first, box.upper, child.count};
-    };
-    std::vector<Visits> visits(pairs_.size());
-    for (std::size_t i = pairs_.size(); i-- > 0;) {
-        const Pair& pair = pairs_[i];
-        tree.pairs[i] = {{refitted(pair.child[0]), refitted(pair.child[1])}};
-        visits[i] = visits_of(tree, i, [&](std::size_t below) { return visits[below]; });
-        const Visits &now = visits[i], &then = pair.as_built;
-        const double anew = then.inner * std::min(1.0, now.leaves / then.leaves);
-        if (!(now.inner - anew <= visits_more)) return std::nullopt;
+    return !pairs_.empty() && std::isfinite(pairs_.front().as_built.inner + pairs_.front().as_built.leaves);
+}
+
+class BvhTopology::Refit {
+public:
+    Refit(const BvhTopology& topology, std::span<const BuildItem<double>> boxes, double visits_more)
+        : topology_(topology), boxes_(boxes), visits_more_(visits_more), visits_(topology.pairs_.size())
+    {
+        tree_.pairs = PlainArray<BvhPair<double>>(topology.pairs_.size());
     }
-    tree.root = refitted(root_);
-    tree.order = order_;
-    return tree;
+
+    // What is below it is done. False where the tree is not to be had.
+    bool fit(std::size_t pair)
+    {
+        const Pair& there = topology_.pairs_[pair];
+        if (!fit(there.child[0], tree_.pairs[pair].child[0]) ||
+            !fit(there.child[1], tree_.pairs[pair].child[1]))
+            return false;
+        visits_[pair] = visits_of(tree_, pair, [this](std::size_t below) { return visits_[below]; });
+        const Visits &now = visits_[pair], &then = there.as_built;
+        const double anew = then.inner * std::min(1.0, now.leaves / then.leaves);
+        return now.inner - anew <= visits_more_;
+    }
+    std::optional<Bvh<double>> finish()
+    {
+        if (!fit(topology_.root_, tree_.root)) return std::nullopt;
+        tree_.order = topology_.order_;
+        tree_.depth = topology_.depth_;
+        return std::move(tree_);
+    }
+
+private:
+    // False where a primitive has no box.
+    bool fit(const Child& child, BvhNode<double>& node) const
+    {
+        Bounds3d box;
+        if (child.count == 0) box = box_around(tree_.pairs[child.first]);
+        for (std::uint32_t i = child.first; i < child.first + child.count; ++i) {
+            const Bounds3d one = box_of(boxes_[topology_.order_[i]]);
+            if (one.empty()) return false;
+            box.extend(one);
+        }
+        node = {box.lower, child.first, box.upper, child.count};
+        return true;
+    }
+
+    const BvhTopology& topology_;
+    std::span<const BuildItem<double>> boxes_;
+    double visits_more_;
+    std::vector<Visits> visits_;
+    Bvh<double> tree_;
+};
+
+std::optional<Bvh<double>>
+BvhTopology::refit(std::span<const BuildItem<double>> boxes, double visits_more, ThreadPool& pool) const
+{
+    const auto have_boxes = std::count_if(
+        boxes.begin(), boxes.end(), [](const BuildItem<double>& item) { return !box_of(item).empty(); });
+    if (boxes.size() != primitives_ || static_cast<std::size_t>(have_boxes) != order_.size() ||
+        order_.empty())
+        return std::nullopt;
+    Refit refit(*this, boxes, visits_more);
+    std::atomic<bool> is_good = true;
+    pool.run_near(pieces_.size(), [&](std::size_t piece, unsigned) {
+        for (std::size_t i = pieces_[piece].end; i-- > pieces_[piece].begin && is_good;)
+            if (!refit.fit(i)) is_good = false;
+    });
+    for (auto pair = above_.rbegin(); pair != above_.rend() && is_good; ++pair)
+        if (!refit.fit(*pair)) is_good = false;
+    if (!is_good) return std::nullopt;
+    return refit.finish();
 }
 
 } // namespace renderer

@@ -7,7 +7,7 @@ namespace renderer {
 
 namespace {
 
-constexpr std::size_t kMostTries = 2;
+constexpr std::size_t kMostAlike = 2;  // each is tried
 constexpr std::size_t kMostTrees = 64; // they are looked through one by one
 
 } // namespace
@@ -26,34 +26,35 @@ std::uint64_t BvhTopologyCache::size_bytes() const
     return bytes_kept();
 }
 
-std::optional<Bvh<double>>
-BvhTopologyCache::refit(std::span<const BuildItem<double>> boxes, BvhSplit split, double visits_more)
+BvhTopologyCache::Kept::iterator BvhTopologyCache::find(const Built& built)
 {
-    std::vector<std::shared_ptr<const BvhTopology>> tried;
-    {
-        const std::lock_guard lock(mutex_);
-        for (auto entry = kept_.rbegin(); entry != kept_.rend() && tried.size() < kMostTries; ++entry)
-            if (entry->split == split && entry->topology->primitives() == boxes.size())
-                tried.push_back(entry->topology);
-    }
-    for (const auto& topology : tried) {
-        std::optional<Bvh<double>> tree = topology->refit(boxes, visits_more);
-        if (!tree) continue;
-        const std::lock_guard lock(mutex_);
-        const auto found = std::find_if(
-            kept_.begin(), kept_.end(), [&](const Entry& entry) { return entry.topology == topology; });
-        if (found != kept_.end()) std::rotate(found, found + 1, kept_.end());
-        return tree;
-    }
-    return std::nullopt;
+    return std::find_if(kept_.begin(), kept_.end(), [&](const Entry& entry) { return entry.built == built; });
 }
 
-void BvhTopologyCache::keep(const Bvh<double>& tree, std::size_t primitives, BvhSplit split)
+std::optional<Bvh<double>> BvhTopologyCache::refit(std::span<const BuildItem<double>> boxes,
+                                                   const Built& built,
+                                                   double visits_more,
+                                                   ThreadPool& pool)
 {
-    auto topology = std::make_shared<const BvhTopology>(tree, primitives);
-    if (topology->size_bytes() > most_bytes_) return;
+    std::shared_ptr<const BvhTopology> topology;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = find(built);
+        if (found == kept_.end()) return std::nullopt;
+        topology = found->topology;
+        std::rotate(found, found + 1, kept_.end());
+    }
+    return topology->refit(boxes, visits_more, pool);
+}
+
+void BvhTopologyCache::keep(const Bvh<double>& tree, const Built& built)
+{
+    if (BvhTopology::size_bytes_of(tree.pairs.size(), tree.order.size()) > most_bytes_) return;
+    auto topology = std::make_shared<const BvhTopology>(tree, built.primitives);
+    if (!topology->is_of_use()) return;
     const std::lock_guard lock(mutex_);
-    kept_.push_back({split, std::move(topology)});
+    if (const auto found = find(built); found != kept_.end()) kept_.erase(found);
+    kept_.push_back({built, std::move(topology)});
     while (kept_.size() > kMostTrees || bytes_kept() > most_bytes_)
         kept_.erase(kept_.begin());
 }

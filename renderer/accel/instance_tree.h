@@ -6,7 +6,8 @@
 // Joined     instances whose meshes were put together (joined_mesh.h) are met there alone, and told apart again.
 // Cost       one instance alone is asked directly: the level costs nothing where a scene does not need it. A list,
 //            for measuring, asks every instance.
-// Refitted   a tree of an earlier frame of an animation, where that takes less time in all than building anew would.
+// Refitted   a tree of an earlier frame of an animation, where that, by what is foretold, takes less time in all than building
+//            anew: see bvh_topology.h.
 #pragma once
 
 #include "renderer/accel/bvh.h"

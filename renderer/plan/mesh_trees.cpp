@@ -55,9 +55,7 @@ double rays_of(const SceneDescription& scene, const RenderSettings& settings)
     if (!names_what_is_there(scene)) return 0;
     const double rays =
         static_cast<double>(most_camera_rays(settings)) * scattered_rays_a_sample(transport_of(scene));
-    const QualitySettings& quality = settings.quality;
-    if (!quality.time_s || quality.samples) return rays;
-    return std::min(rays, *quality.time_s * threads_of(settings.acceleration) / kSecondsARay);
+    return std::min(rays, most_rays_in_time(settings));
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "renderer/plan/predict_cost.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace renderer {
 
@@ -45,19 +46,30 @@ std::uint64_t most_camera_rays(const RenderSettings& settings)
            quality.samples.value_or(quality.time_s ? quality.max_samples : kDefaultSamples);
 }
 
+double most_rays_in_time(const RenderSettings& settings)
+{
+    const QualitySettings& quality = settings.quality;
+    if (!quality.time_s || quality.samples) return std::numeric_limits<double>::infinity();
+    return *quality.time_s * threads_of(settings.acceleration) / kSecondsARay;
+}
+
 Prediction predict_cost(const SceneDescription& scene,
                         const RenderSettings& settings,
                         const Budget& budget,
                         const TransportChoice& transport)
 {
     Prediction p;
-    const QualitySettings& quality = settings.quality;
     p.camera_rays = most_camera_rays(settings);
-    p.rays = static_cast<double>(p.camera_rays) * rays_a_sample(scene, transport);
+    const double each = rays_a_sample(scene, transport);
+    p.rays = static_cast<double>(p.camera_rays) * each;
     p.memory_bytes = memory_bytes(budget);
     p.threads = threads_of(settings.acceleration);
+    const double in_time = most_rays_in_time(settings);
+    if (p.rays > in_time) {
+        p.rays = in_time;
+        p.camera_rays = static_cast<std::uint64_t>(std::max(1.0, in_time / each));
+    }
     p.seconds = p.rays * kSecondsARay / p.threads;
-    if (quality.time_s && !quality.samples) p.seconds = std::min(p.seconds, *quality.time_s);
     p.seconds += table_seconds(scene, transport) / p.threads;
     return p;
 }

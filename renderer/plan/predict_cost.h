@@ -16,6 +16,8 @@ inline constexpr double kUsualScatterings = 3;
 
 // As many as `quality` allows.
 std::uint64_t most_camera_rays(const RenderSettings& settings);
+// Of all kinds, in the time that `quality` gives, about; infinite where it gives none.
+double most_rays_in_time(const RenderSettings& settings);
 
 Prediction predict_cost(const SceneDescription& scene,
                         const RenderSettings& settings,

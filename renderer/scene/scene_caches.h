@@ -1,7 +1,7 @@
 // SceneCaches: what one scene leaves behind for the next that resembles it, as the frames of an animation do.
 //
 // Threads  any number at once.
-// Memory   what each of them is made for: 80 MB together.
+// Memory   what each of them is made for: 80 MiB together.
 #pragma once
 
 #include "renderer/accel/bvh_topology_cache.h"

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <span>
 #include <thread>
 #include <vector>
@@ -19,27 +20,35 @@ std::vector<Bounds3d> boxes_of(std::uint64_t seed, std::size_t count)
     return random_boxes<double>(random, count);
 }
 
-void keep(BvhTopologyCache& cache, const std::vector<Bounds3d>& boxes, BvhSplit split = BvhSplit::sah)
+struct How {
+    BvhSplit split = BvhSplit::sah;
+    std::uint64_t kinds = 0;
+};
+
+void keep(BvhTopologyCache& cache, const std::vector<Bounds3d>& boxes, const How& how = {})
 {
-    cache.keep(build(boxes, split), boxes.size(), split);
+    cache.keep(build(boxes, how.split), {how.split, boxes.size(), how.kinds});
 }
 
-bool refits(BvhTopologyCache& cache, const std::vector<Bounds3d>& boxes, BvhSplit split = BvhSplit::sah)
+bool refits(BvhTopologyCache& cache, const std::vector<Bounds3d>& boxes, const How& how = {})
 {
     const PlainArray<BuildItem<double>> items = items_of(boxes);
-    return cache.refit({items.data(), items.size()}, split, 0.1).has_value();
+    ThreadPool pool(1);
+    return cache.refit({items.data(), items.size()}, {how.split, boxes.size(), how.kinds}, 0.1, pool)
+        .has_value();
 }
 
 } // namespace
 
-TEST(BvhTopologyCache, RefitsATreeThatWasBuiltTheSameWayOverAsMany)
+TEST(BvhTopologyCache, RefitsATreeThatWasBuiltAlike)
 {
     BvhTopologyCache cache;
     const auto boxes = boxes_of(1, 500);
     EXPECT_FALSE(refits(cache, boxes));
     keep(cache, boxes);
     EXPECT_TRUE(refits(cache, boxes));
-    EXPECT_FALSE(refits(cache, boxes, BvhSplit::midpoint));
+    EXPECT_FALSE(refits(cache, boxes, {.split = BvhSplit::midpoint}));
+    EXPECT_FALSE(refits(cache, boxes, {.kinds = 1}));
     EXPECT_FALSE(refits(cache, boxes_of(1, 501)));
     EXPECT_FALSE(refits(cache, boxes_of(2, 500))); // as many, elsewhere
 }
@@ -48,11 +57,11 @@ TEST(BvhTopologyCache, HasRoomForTwoAnimationsOfAsManyObjects)
 {
     BvhTopologyCache cache;
     const auto one = boxes_of(1, 500), other = boxes_of(2, 500);
-    keep(cache, one);
-    keep(cache, other);
+    keep(cache, one, {.kinds = 1});
+    keep(cache, other, {.kinds = 2});
     for (int frame = 0; frame < 3; ++frame) {
-        EXPECT_TRUE(refits(cache, one));
-        EXPECT_TRUE(refits(cache, other));
+        EXPECT_TRUE(refits(cache, one, {.kinds = 1}));
+        EXPECT_TRUE(refits(cache, other, {.kinds = 2}));
     }
 }
 
@@ -82,6 +91,37 @@ TEST(BvhTopologyCache, DoesNotKeepATreeThatIsLargerThanItself)
     keep(cache, large);
     EXPECT_TRUE(refits(cache, small));
     EXPECT_FALSE(refits(cache, large));
+}
+
+TEST(BvhTopologyCache, KeepsTheNewestOfTreesThatWereBuiltAlike)
+{
+    BvhTopologyCache cache;
+    const auto one = boxes_of(1, 500), other = boxes_of(2, 500);
+    keep(cache, one);
+    const std::uint64_t bytes = cache.size_bytes();
+    keep(cache, other);
+    EXPECT_TRUE(refits(cache, other));
+    EXPECT_FALSE(refits(cache, one));
+    EXPECT_LT(cache.size_bytes(), bytes * 3 / 2);
+}
+
+TEST(BvhTopologyCache, KeepsSoManySmallTreesAndNoMore)
+{
+    BvhTopologyCache cache;
+    constexpr std::size_t kMost = 64;
+    for (std::size_t i = 0; i <= kMost; ++i)
+        keep(cache, boxes_of(i, 10 + i));
+    EXPECT_FALSE(refits(cache, boxes_of(0, 10)));
+    for (std::size_t i = 1; i <= kMost; ++i)
+        EXPECT_TRUE(refits(cache, boxes_of(i, 10 + i))) << i;
+}
+
+TEST(BvhTopologyCache, KeepsNoTreeThatCouldNeverBeRefitted)
+{
+    BvhTopologyCache cache;
+    keep(cache, std::vector<Bounds3d>(100, Bounds3d{{1, 2, 3}, {1, 2, 3}}));
+    keep(cache, boxes_of(1, 1));
+    EXPECT_EQ(cache.size_bytes(), 0u);
 }
 
 TEST(BvhTopologyCache, ServesSeveralThreadsAtOnce)

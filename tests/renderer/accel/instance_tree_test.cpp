@@ -134,6 +134,27 @@ TEST(InstanceTree, IsBuiltAnewWhereRaysWouldLoseMoreInAnOldOneThanThatTakes)
     EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1e6}).upper_level(), UpperLevel::refitted); // that one
 }
 
+TEST(InstanceTree, IsBuiltAnewOverObjectsOfOtherKinds)
+{
+    BvhTopologyCache trees;
+    const auto level_with_disk_at = [&trees](unsigned place) {
+        Objects objects;
+        for (unsigned i = 0; i < 20; ++i) {
+            const Affine3 there = Affine3::translate({1.0 * i, 0, 0});
+            if (i == place)
+                objects.add(Disk{0.3}, there);
+            else
+                objects.add(Sphere{0.3}, there);
+        }
+        return objects.tree(BvhSplit::sah, {&trees, 1e-3}).upper_level(); // so few rays are worth no building
+    };
+    EXPECT_EQ(level_with_disk_at(3), UpperLevel::built);
+    EXPECT_EQ(level_with_disk_at(3), UpperLevel::refitted);
+    EXPECT_EQ(level_with_disk_at(4), UpperLevel::built);
+    EXPECT_EQ(level_with_disk_at(20), UpperLevel::built); // none
+    EXPECT_EQ(level_with_disk_at(3), UpperLevel::refitted);
+}
+
 TEST(InstanceTree, HasNoUpperLevelOverASingleObject)
 {
     Objects objects;

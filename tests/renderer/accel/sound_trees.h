@@ -37,10 +37,11 @@ PlainArray<BuildItem<T>> items_of(const std::vector<Bounds3<T>>& boxes)
 }
 
 template <typename T>
-Bvh<T> build(const std::vector<Bounds3<T>>& boxes, BvhSplit split, unsigned threads = 1)
+Bvh<T>
+build(const std::vector<Bounds3<T>>& boxes, BvhSplit split, unsigned threads = 1, std::uint32_t leaf_size = 4)
 {
     ThreadPool pool(threads);
-    return *build_bvh<T>(items_of(boxes), {.split = split}, pool);
+    return *build_bvh<T>(items_of(boxes), {.split = split, .leaf_size = leaf_size}, pool);
 }
 
 template <typename T>
