@@ -7,7 +7,6 @@ namespace renderer {
 
 namespace {
 
-constexpr std::size_t kMostAlike = 2;  // each is tried
 constexpr std::size_t kMostTrees = 64; // they are looked through one by one
 
 } // namespace
