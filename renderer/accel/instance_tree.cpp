@@ -68,7 +68,8 @@ InstanceTree::InstanceTree(std::vector<Instance> instances,
                            BvhSplit split,
                            ThreadPool& pool,
                            std::optional<JoinedMesh> joined,
-                           const EarlierFrames& earlier)
+                           const EarlierFrames& earlier,
+                           const std::stop_token& stop)
     : InstanceTree(std::move(instances), std::move(joined))
 {
     PlainArray<BuildItem<double>> items(asked_count());
@@ -103,7 +104,9 @@ InstanceTree::InstanceTree(std::vector<Instance> instances,
         items[count++] = item;
     }
     items.shorten(count);
-    bvh_ = *build_bvh<double>(std::move(items), {.split = split, .leaf_size = 1}, pool);
+    auto tree = build_bvh<double>(std::move(items), {.split = split, .leaf_size = 1}, pool, stop);
+    if (!tree) return;
+    bvh_ = std::move(*tree);
     if (bvh_.pairs.empty()) return;
     upper_level_ = UpperLevel::built;
     if (earlier.trees != nullptr) earlier.trees->keep(bvh_, built);

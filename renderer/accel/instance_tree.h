@@ -18,6 +18,7 @@
 
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -31,12 +32,14 @@ struct EarlierFrames {
 
 class InstanceTree {
 public:
-    // Instances keep their numbers; those with nothing to hit are never found.
+    // Instances keep their numbers; those with nothing to hit are never found. Where `stop` was requested, what is made
+    // means nothing.
     InstanceTree(std::vector<Instance> instances,
                  BvhSplit split,
                  ThreadPool& pool,
                  std::optional<JoinedMesh> joined = std::nullopt,
-                 const EarlierFrames& earlier = {});
+                 const EarlierFrames& earlier = {},
+                 const std::stop_token& stop = {});
     // No tree: every instance in turn; `boxes_first`: only those whose box the ray meets.
     static InstanceTree
     list(std::vector<Instance> instances, bool boxes_first, std::optional<JoinedMesh> joined = std::nullopt);

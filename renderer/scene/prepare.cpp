@@ -356,8 +356,10 @@ std::shared_ptr<const Scene> prepare(const AssumedScene& scene,
                            acceleration.split.value_or(BvhSplit::sah),
                            pool,
                            std::move(made.joined),
-                           {caches != nullptr ? &caches->upper_levels : nullptr, plan.prediction.rays})
+                           {caches != nullptr ? &caches->upper_levels : nullptr, plan.prediction.rays},
+                           stop)
             : InstanceTree::list(std::move(made.instances), acceleration.bounds, std::move(made.joined));
+    if (stop.stop_requested()) return nullptr;
     made.geometry.bvh_bytes += tree.size_bytes();
     made.geometry.upper_level = tree.upper_level();
     made.numerics.coordinate_ratio = coordinate_ratio(tree.bounds(), plan.world_origin);

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 namespace {
@@ -153,6 +154,18 @@ TEST(InstanceTree, IsBuiltAnewOverObjectsOfOtherKinds)
     EXPECT_EQ(level_with_disk_at(4), UpperLevel::built);
     EXPECT_EQ(level_with_disk_at(20), UpperLevel::built); // none
     EXPECT_EQ(level_with_disk_at(3), UpperLevel::refitted);
+}
+
+TEST(InstanceTree, LeavesNothingBehindOnceAStopIsRequested)
+{
+    Objects objects;
+    for (int i = 0; i < 3; ++i)
+        objects.add(Sphere{0.3}, Affine3::translate({1.0 * i, 0, 0}));
+    std::stop_source stop;
+    stop.request_stop();
+    BvhTopologyCache trees;
+    EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1}, stop.get_token()).upper_level(), UpperLevel::none);
+    EXPECT_EQ(trees.size_bytes(), 0u);
 }
 
 TEST(InstanceTree, HasNoUpperLevelOverASingleObject)

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -37,9 +38,10 @@ public:
     }
     std::size_t size() const { return instances_.size(); }
 
-    InstanceTree tree(BvhSplit split = BvhSplit::sah, const EarlierFrames& earlier = {})
+    InstanceTree
+    tree(BvhSplit split = BvhSplit::sah, const EarlierFrames& earlier = {}, const std::stop_token& stop = {})
     {
-        return {instances_, split, pool_, std::nullopt, earlier};
+        return {instances_, split, pool_, std::nullopt, earlier, stop};
     }
     InstanceTree list(bool boxes_first) { return InstanceTree::list(instances_, boxes_first); }
 
