@@ -135,6 +135,56 @@ TEST(InstanceTree, IsBuiltAnewWhereRaysWouldLoseMoreInAnOldOneThanThatTakes)
     EXPECT_EQ(objects.tree(BvhSplit::sah, {&trees, 1e6}).upper_level(), UpperLevel::refitted); // that one
 }
 
+// The greatest number of which `holds`, which holds of smaller ones, to a thousandth.
+template <typename Holds>
+double greatest(double low, double high, Holds&& holds)
+{
+    EXPECT_TRUE(holds(low) && !holds(high));
+    while (high > 1.001 * low) {
+        const double middle = std::sqrt(low * high);
+        (holds(middle) ? low : high) = middle;
+    }
+    return low;
+}
+
+TEST(InstanceTree, WeighsBuildingOneOfItsInstancesAsSomeDozensOfVisits)
+{
+    constexpr std::size_t kCount = 200;
+    const auto frame = [](int number, const EarlierFrames& earlier) {
+        Random random(14);
+        Objects objects;
+        while (objects.size() < kCount) {
+            const Vec3d there = random.in_box({-5, -5, -5}, {5, 5, 5}), by = random.direction() * 0.5;
+            objects.add(Sphere{0.1}, Affine3::translate(there + by * number));
+        }
+        return objects.tree(BvhSplit::sah, earlier);
+    };
+    const double rays = greatest(1, 1e9, [&](double number) {
+        BvhTopologyCache trees;
+        frame(0, {&trees, number});
+        return frame(1, {&trees, number}).upper_level() == UpperLevel::refitted;
+    });
+
+    ThreadPool pool(1);
+    const auto boxes = [&](int number) {
+        PlainArray<BuildItem<double>> items(kCount);
+        const InstanceTree tree = frame(number, {});
+        for (std::uint32_t i = 0; i < kCount; ++i) {
+            const Bounds3d box = tree.instances()[i].world_bounds();
+            items[i] = {box.lower, i, box.upper};
+        }
+        return items;
+    };
+    const BvhTopology topology(*build_bvh<double>(boxes(0), {.leaf_size = 1}, pool), kCount);
+    const PlainArray<BuildItem<double>> there = boxes(1);
+    const double too_few = greatest(1e-9, 1e9, [&](double more) {
+        return !topology.refit({there.data(), there.size()}, more, pool).has_value();
+    });
+    const double visits_an_instance = rays * too_few / kCount;
+    EXPECT_GT(visits_an_instance, 20);
+    EXPECT_LT(visits_an_instance, 80);
+}
+
 TEST(InstanceTree, IsBuiltAnewOverObjectsOfOtherKinds)
 {
     BvhTopologyCache trees;
