@@ -103,7 +103,9 @@ void BvhTopology::cut_in_pieces()
 
 bool BvhTopology::is_of_use() const
 {
-    return !pairs_.empty() && std::isfinite(pairs_.front().as_built.inner + pairs_.front().as_built.leaves);
+    if (pairs_.empty()) return false;
+    const Visits& whole = pairs_[root_.first].as_built;
+    return std::isfinite(whole.inner + whole.leaves);
 }
 
 class BvhTopology::Refit {

@@ -50,7 +50,7 @@ void BvhTopologyCache::keep(const Bvh<double>& tree, const Built& built)
 {
     if (BvhTopology::size_bytes_of(tree.pairs.size(), tree.order.size()) > most_bytes_) return;
     auto topology = std::make_shared<const BvhTopology>(tree, built.primitives);
-    if (!topology->is_of_use()) return;
+    if (!topology->is_of_use() || topology->size_bytes() > most_bytes_) return;
     const std::lock_guard lock(mutex_);
     if (const auto found = find(built); found != kept_.end()) kept_.erase(found);
     kept_.push_back({built, std::move(topology)});

@@ -1,6 +1,7 @@
 #include "tests/bench/bench_instances.h"
 
 #include "tests/bench/stopwatch.h"
+#include "tests/support/random_numbers.h"
 
 #include <cmath>
 
@@ -14,7 +15,7 @@ std::vector<Instance> instances_of(const PreparedMesh& mesh, std::uint32_t count
     std::vector<Instance> instances;
     instances.reserve(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec3d at{3.0 * (i % side), 3.0 * (i / side % side), 3.0 * (i / side / side)};
+        const Vec3d at{kCellSize * (i % side), kCellSize * (i / side % side), kCellSize * (i / side / side)};
         const Affine3 turned = Affine3::rotate_deg(static_cast<double>(i * 37 % 360), {1, 2, 3});
         instances.push_back(
             Instance::place(MeshGeometry{&mesh_of(mesh), bvh_of(mesh)}, Affine3::translate(at) * turned)
@@ -27,18 +28,16 @@ double million_rays_a_second(const InstanceTree& tree)
 {
     constexpr unsigned kRuns = 20000, kRays = 16;
     const Vec3d low = tree.bounds().lower, extent = tree.bounds().extent();
-    std::uint64_t state = 1;
-    const auto uniform = [&state] {
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        return static_cast<double>(state >> 11) * 0x1p-53;
-    };
+    tests::RandomNumbers random(1);
     Ray rays[kRays];
     SceneHit hits[kRays];
     double seconds = 0;
     for (unsigned run = 0; run < kRuns; ++run) {
         for (Ray& ray : rays)
-            ray = Ray{low + Vec3d{extent.x * uniform(), extent.y * uniform(), extent.z * uniform()},
-                      {2 * uniform() - 1, 2 * uniform() - 1, 2 * uniform() - 1}};
+            ray = Ray{low + Vec3d{extent.x * random.between(0, 1),
+                                  extent.y * random.between(0, 1),
+                                  extent.z * random.between(0, 1)},
+                      {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}};
         const Stopwatch watch(CLOCK_THREAD_CPUTIME_ID);
         tree.closest_hits(rays, hits);
         seconds += watch.spent().cpu_s;

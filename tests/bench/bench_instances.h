@@ -9,7 +9,9 @@
 
 namespace bench {
 
-// One in a cell, each turned its own way; cells are three units wide.
+inline constexpr double kCellSize = 3;
+
+// One in a cell, each turned its own way.
 std::vector<renderer::Instance> instances_of(const renderer::PreparedMesh& mesh, std::uint32_t count);
 
 // Processor time of rays from within the bounds in all directions, the same ones at every call.

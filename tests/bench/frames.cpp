@@ -7,6 +7,7 @@
 #include "tests/bench/spread.h"
 #include "tests/bench/stopwatch.h"
 #include "tests/bench/terrain.h"
+#include "tests/support/random_numbers.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -22,21 +23,6 @@ namespace {
 
 using namespace renderer;
 
-constexpr double kCell = 3; // of instances_of
-
-class Uniform {
-public:
-    explicit Uniform(std::uint64_t seed) : state_(seed) {}
-    double operator()(double low, double high)
-    {
-        state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-        return low + (high - low) * static_cast<double>(state_ >> 11) * 0x1p-53;
-    }
-
-private:
-    std::uint64_t state_;
-};
-
 enum class Motion { still, some, all, burst };
 struct NamedMotion {
     Motion motion;
@@ -50,19 +36,19 @@ constexpr NamedMotion kMotions[]{{Motion::still, "only the camera moves"},
 // The instances where they are in frame `frame`.
 std::vector<Instance> moved(const std::vector<Instance>& still, Motion motion, int frame, int frames)
 {
-    Uniform uniform(7);
+    tests::RandomNumbers random(7);
     const double time = static_cast<double>(frame) / frames;
     const Vec3d middle = still[still.size() / 2].world_bounds().center();
     std::vector<Instance> there;
     there.reserve(still.size());
     for (const Instance& instance : still) {
-        const Vec3d way{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-        const bool moves = motion != Motion::some || uniform(0, 1) < 0.1;
+        const Vec3d way{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+        const bool moves = motion != Motion::some || random.between(0, 1) < 0.1;
         Vec3d by{};
         if (motion == Motion::burst)
             by = (middle - instance.world_bounds().center()) * (1 - time);
         else if (motion != Motion::still && moves)
-            by = way * (0.1 * kCell * frame);
+            by = way * (0.1 * kCellSize * frame);
         there.push_back(
             Instance::place(instance.geometry(), Affine3::translate(by) * instance.world_from_object())
                 .value());
@@ -72,12 +58,13 @@ std::vector<Instance> moved(const std::vector<Instance>& still, Motion motion, i
 
 bool same_hits(const InstanceTree& a, const InstanceTree& b)
 {
-    Uniform uniform(3);
+    tests::RandomNumbers random(3);
     const Vec3d low = a.bounds().lower, extent = a.bounds().extent();
     for (int i = 0; i < 10000; ++i) {
-        const Ray ray{low +
-                          Vec3d{extent.x * uniform(0, 1), extent.y * uniform(0, 1), extent.z * uniform(0, 1)},
-                      {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}};
+        const Ray ray{low + Vec3d{extent.x * random.between(0, 1),
+                                  extent.y * random.between(0, 1),
+                                  extent.z * random.between(0, 1)},
+                      {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}};
         const auto hit = a.closest_hit(ray), other = b.closest_hit(ray);
         if (hit.has_value() != other.has_value()) return false;
         if (hit &&

@@ -93,6 +93,18 @@ TEST(BvhTopologyCache, DoesNotKeepATreeThatIsLargerThanItself)
     EXPECT_FALSE(refits(cache, large));
 }
 
+TEST(BvhTopologyCache, LosesNothingToATreeThatIsOneByteLargerThanItself)
+{
+    BvhTopologyCache sizes;
+    const auto small = boxes_of(1, 100), large = boxes_of(2, 1000);
+    keep(sizes, large);
+    BvhTopologyCache cache(sizes.size_bytes() - 1);
+    keep(cache, small);
+    keep(cache, large);
+    EXPECT_TRUE(refits(cache, small));
+    EXPECT_FALSE(refits(cache, large));
+}
+
 TEST(BvhTopologyCache, KeepsTheNewestOfTreesThatWereBuiltAlike)
 {
     BvhTopologyCache cache;
